@@ -66,7 +66,7 @@ def _add(scene, part, rng, duration: float) -> None:
         limits = {"force": 10.0 ** rng.uniform(0, 2.5), "torque": 10.0 ** rng.uniform(-1, 2)}
         if rng.random() < 0.3:
             limits["impulse"] = 10.0 ** rng.uniform(-2, 1)
-        scene._breaks(part, limits)
+        scene._breaks(part, {name: float(limit) for name, limit in limits.items()})
         return
     if kind == "begins off" and isinstance(part, (Joint, AppliedForce)):
         if _on(scene, part, 0.5 * time) and rng.random() < 0.5:

@@ -186,3 +186,23 @@ def test_the_paper_method_releases_too():
     np.testing.assert_allclose(solution.position[-1], other.position[-1], atol=1e-3)
     assert np.all(solution["hinge"].force[-1] == 0.0)
     assert GROUND.index < 0
+
+
+def test_a_belt_comes_off():
+    scene, wheels = carom.Scene(gravity=(0, 0, 0)), []
+    for k in range(2):
+        wheel = scene.add_body(
+            carom.Cylinder(0.1, 0.02), mass=1.0, position=(0.5 * k, 0, 0), angular_velocity=(0, 0, 1.0)
+        )
+        wheels.append(wheel)
+        scene.add_joint(joints.Revolute((0.5 * k, 0, 0), (0, 0, 1)), GROUND, wheel, name=f"axle{k}")
+    belt = scene.add_joint(joints.Belt(0.1, 0.1), *wheels)
+    scene.add_force(forces.JointForce("axle0", 0.01))
+    scene.switch(belt, at=0.5)
+    solution = carom.simulate(scene, 1.0)
+    # together M/(2 I), then alone M/I
+    np.testing.assert_allclose(solution["axle0"].rate[-1], 1.0 + 0.5 * 1.0 + 0.5 * 2.0)
+    np.testing.assert_allclose(solution["axle1"].rate[-1], 1.0 + 0.5 * 1.0)
+    with pytest.raises(ValueError, match="left out of a Belt"):
+        scene.add_joint(joints.Belt(0.1, 0.1), *wheels, breaks_at=10.0)
+    assert len(scene.constraints) == 1

@@ -25,7 +25,7 @@ from carom.results.solution import Solution
 from carom.results.state import SystemState
 from carom.scene.forces import AppliedForce
 from carom.scene.scene import Scene
-from carom.scene.switches import check_on
+from carom.scene.switches import check_on, each
 from carom.status import MistakeWarning, SimulationError, Status
 from carom.stepping.settings import (
     Settings,
@@ -216,7 +216,7 @@ class Run:
         """
         scene, off = self._run.scene, checks.flag("off", off)
         named = {one.name: one for switch in scene.switches for one in switch.parts}
-        for given in part if isinstance(part, tuple) else (part,):
+        for given in each(part):
             one = scene._parts.named("part", given)
             if one.name not in named:
                 raise ValueError(

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from types import MappingProxyType
 from typing import Any
 
@@ -11,7 +11,7 @@ from carom.scene.changes import dependents
 from carom.scene.constraints import Constraint, Driver, Rows
 from carom.scene.contacts import Contact
 from carom.scene.forces import AppliedForce
-from carom.scene.joints import Joint
+from carom.scene.joints import Belt, Clearance, Joint, Tether
 from carom.scene.joints.rolling import RollingDisc, RollingSphere
 from carom.scene.more_forces import JointInertia
 from carom.scene.stops import Stop
@@ -82,8 +82,7 @@ class SceneSwitches(MethodsOfScene):
         >>> scene.switch("hinge", at=lambda t, state: state["bob"].position[0])
         Switch('switch1', 'hinge', off at <lambda>)
         """
-        given = part if isinstance(part, tuple) else (part,)
-        parts = tuple(self._switched(one) for one in given if one is not None)
+        parts = tuple(self._switched(one) for one in each(part))
         off = checks.flag("off", off)
         values = _moment(at)
         if not off:
@@ -98,19 +97,13 @@ class SceneSwitches(MethodsOfScene):
             raise ValueError(f"part must not be an inertia, got {found.name!r}")
         return found
 
-    def _breaks(self, made, breaks_at) -> Any:
-        """Make the switch of a joint that breaks; return what was made."""
-        if breaks_at is None:
-            return made
-        limits = limits_of(breaks_at)
-        for one in made if isinstance(made, tuple) else (made,):
-            if isinstance(one, Stop) and "torque" in limits:
-                raise ValueError(
-                    f"breaks_at must have no torque for {one.name!r}, a stop, got {limits['torque']:g}"
+    def _breaks(self, made, limits: dict[str, float]) -> Any:
+        """Make the switches of what breaks beyond some limits; return what was made."""
+        for one in made if isinstance(made, tuple) and limits else (made,):
+            if limits:
+                self._parts.make(
+                    Switch, "switch", f"{one.name}.breaks", False, parts=(one,), off=True, **limits
                 )
-            self._parts.make(
-                Switch, "switch", f"{one.name}.breaks", False, parts=(one,), off=True, **limits
-            )
         return made
 
     @property
@@ -119,14 +112,29 @@ class SceneSwitches(MethodsOfScene):
         return self._parts.parts(Switch)
 
 
-def limits_of(breaks_at) -> dict[str, float]:
-    """Return limits by name: a number is one of the force."""
+def limits_of(definition, breaks_at) -> dict[str, float]:
+    """Return the limits of a joint by name, none of one that does not break: a number is one of the force."""
+    if breaks_at is None:
+        return {}
+    if isinstance(definition, Belt):
+        raise ValueError(
+            f"breaks_at must be left out of a Belt, got {checks.shown(breaks_at)}; take its parts out by "
+            "scene.switch(belt, at=)"
+        )
     if not isinstance(breaks_at, Mapping):
         return {"force": checks.number("breaks_at", breaks_at, above=0.0, unit="N")}
     unknown = [name for name in breaks_at if name not in LIMITS]
     if unknown or not breaks_at:
         raise ValueError(
             f"breaks_at must be a force [N], or have some of {', '.join(map(repr, LIMITS))}, got "
+            f"{checks.shown(breaks_at)}"
+        )
+    stops = isinstance(definition, (Tether, Clearance)) or getattr(
+        definition, "limits_of_length", None
+    )
+    if stops and "torque" in breaks_at:
+        raise ValueError(
+            f"breaks_at must have no torque for a {type(definition).__name__}, which has none, got "
             f"{checks.shown(breaks_at)}"
         )
     return {
@@ -163,6 +171,15 @@ def check_on(part) -> None:
     else:
         return
     raise ValueError(f"off must be True for {part.name!r}, {why}; got False")
+
+
+def each(parts) -> Iterator[Any]:
+    """Yield parts that stand alone or in tuples, such as those of a play, a pin or a belt; None is none."""
+    if isinstance(parts, tuple):
+        for one in parts:
+            yield from each(one)
+    elif parts is not None:
+        yield parts
 
 
 def off_at_start(scene) -> frozenset[str]:

@@ -15,7 +15,7 @@ from carom.scene.bodies import Body, Ground
 from carom.scene.coordinates import Axial, Bush, Length
 from carom.scene.joints import JOINTS, Belt, Clearance, Distance, Joint, JointDefinition, Tether
 from carom.scene.stops import Stop
-from carom.scene.switches import SceneSwitches
+from carom.scene.switches import SceneSwitches, limits_of
 
 if TYPE_CHECKING:
     import numpy as np
@@ -139,12 +139,13 @@ class SceneJoints(SceneSwitches):
         >>> scene.add_joint(hinge, carom.GROUND, rod, name="hinge")
         Joint('hinge', Revolute, 'GROUND' -> 'rod')
         """
+        limits = limits_of(definition, breaks_at)
         if isinstance(definition, (Tether, Clearance, Belt)) or (
             isinstance(definition, Distance) and definition.limits_of_length
         ):
             placed = parent_frame is not None or child_frame is not None
             made = self._add_length(definition, parent, child, name, replace, placed)
-            return self._breaks(made, breaks_at)
+            return self._breaks(made, limits)
         order = "; the order is add_joint(definition, parent, child)"
         checks.instance("definition", definition, JOINTS, order if _is_side(definition) else "")
         if parent is None or child is None:
@@ -158,7 +159,7 @@ class SceneJoints(SceneSwitches):
             Joint, "joint", name, replace, definition=definition, parent=parent, child=child,
             frames=(parent_frame, child_frame),
         )  # fmt: skip
-        return self._breaks(made, breaks_at)
+        return self._breaks(made, limits)
 
     def _add_length(
         self,
