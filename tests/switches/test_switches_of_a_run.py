@@ -4,7 +4,7 @@ import numpy as np
 import pytest
 
 import carom
-from carom import GROUND, constraints, forces
+from carom import GROUND, constraints, forces, joints
 from switches.test_switches import boxes, pendulum
 
 
@@ -192,7 +192,10 @@ def test_a_belt_comes_off():
     scene, wheels = carom.Scene(gravity=(0, 0, 0)), []
     for k in range(2):
         wheel = scene.add_body(
-            carom.Cylinder(0.1, 0.02), mass=1.0, position=(0.5 * k, 0, 0), angular_velocity=(0, 0, 1.0)
+            carom.Cylinder(0.1, 0.02),
+            mass=1.0,
+            position=(0.5 * k, 0, 0),
+            angular_velocity=(0, 0, 1.0),
         )
         wheels.append(wheel)
         scene.add_joint(joints.Revolute((0.5 * k, 0, 0), (0, 0, 1)), GROUND, wheel, name=f"axle{k}")

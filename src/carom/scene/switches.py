@@ -99,11 +99,10 @@ class SceneSwitches(MethodsOfScene):
 
     def _breaks(self, made, limits: dict[str, float]) -> Any:
         """Make the switches of what breaks beyond some limits; return what was made."""
-        for one in made if isinstance(made, tuple) and limits else (made,):
-            if limits:
-                self._parts.make(
-                    Switch, "switch", f"{one.name}.breaks", False, parts=(one,), off=True, **limits
-                )
+        for one in each(made) if limits else ():
+            self._parts.make(
+                Switch, "switch", f"{one.name}.breaks", False, parts=(one,), off=True, **limits
+            )
         return made
 
     @property
