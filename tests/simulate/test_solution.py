@@ -132,7 +132,7 @@ def test_history_of_an_impact(method):
         )
         np.testing.assert_allclose(history.velocity[0], hit.relative_velocity_before)
         np.testing.assert_allclose(history.impulse, hit.impulse, rtol=0, atol=1e-12)
-        assert history.duration == pytest.approx(hit.duration, rel=1e-10)
+        assert history.duration == pytest.approx(hit.layer_duration, rel=1e-10)
         assert history.energy_change == pytest.approx(hit.energy_change, rel=1e-9)
         assert history.x_min == pytest.approx(0.7e-4, rel=1e-12)
         assert hit.penetration == pytest.approx(0.3e-4, rel=1e-12)
@@ -147,7 +147,7 @@ def test_duration_of_an_impact(bounce):
     hits = bounce.impacts
     v = -hits.relative_velocity_before[:, 0]
     expected = 2 * 1e-5 * 0.1 * -np.log(0.8) / v * (1 + 1 / E)
-    np.testing.assert_allclose(hits.duration, expected, rtol=1e-12)
+    np.testing.assert_allclose(hits.layer_duration, expected, rtol=1e-12)
 
 
 def test_table_of_impacts(bounce):

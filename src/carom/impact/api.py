@@ -196,7 +196,8 @@ def resolve_impact(
         from carom.impact.many import resolve_many
 
         many = resolve_many(*given, tangential_restitution)
-        many._stated["stiffness"] = stiffness
+        if stiffness is not None:
+            many._stated["stiffness"] = stiffness
         return many
     W, u, mu, e, number = checked_impact(inverse_mass, velocity, friction, restitution, law)
     e_t = checked_tangential(tangential_restitution)

@@ -94,7 +94,7 @@ def _record(solution, k):
     if isinstance(solution, (ImpactRecord, CoordinateImpact)):
         return solution
     if isinstance(solution, Impact):
-        if not solution._stated:
+        if "inverse_mass" not in solution._stated:
             raise ValueError(
                 "there must be one impact in space to draw, got several, or a plane one (give W (3, 3))"
             )
