@@ -156,6 +156,10 @@ def read(folder):
         "plots.hodograph": lambda: (
             plots.hodograph, dict(solution=solution(), k=0, flow=False, panel="slip", **drawn),
         ),
+        "plots.impact_force": lambda: (
+            plots.impact_force,
+            dict(solution=solution(), k=0, stiffness=carom.Stiffness(1e6), panel="force", **drawn),
+        ),
         "plots.impact_inside": lambda: (
             plots.impact_inside, dict(solution=solution(), k=0, steps=4, panel="force", **drawn),
         ),

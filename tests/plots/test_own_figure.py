@@ -122,3 +122,18 @@ def test_the_lines_are_the_energy_lost():
         np.diag([2.0, 0.0, 0.0]), np.array([-1.0, 0.0, 0.0]), 0, np.array([0.0, 0.5]), np.array([0.0, 0.5, 1.0])
     )  # fmt: skip
     np.testing.assert_allclose(loss, np.array([[1.0], [0.75], [0.0]]) * np.ones(2), atol=1e-14)
+
+
+def test_the_force_of_an_impact_is_drawn_by_its_stiffness():
+    struck = carom.resolve_impact(
+        np.eye(3), (-1.0, 1.0, 0.0), 0.1, 0.5, stiffness=carom.Stiffness(1e6)
+    )
+    upper, lower = plots.impact_force(struck)
+    top = max(line.get_ydata().max() for line in upper.lines)
+    assert top == pytest.approx(struck.peak_force / 1e3, rel=1e-3)  # in kN
+    assert lower.get_ylabel().startswith("depth")
+    assert plots.impact_force(struck.force(), panel="depth").get_ylabel() == lower.get_ylabel()
+    _, ax = plt.subplots()
+    assert plots.impact_force(struck, ax=ax) is ax
+    with pytest.raises(TypeError, match="stiffness"):
+        plots.impact_force(carom.resolve_impact(np.eye(3), (-1.0, 1.0, 0.0), 0.1, 0.5))

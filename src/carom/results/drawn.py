@@ -14,14 +14,14 @@ from carom.scene.shown import Shown
 from carom.status import Status
 
 KINDS = (
-    "overview", "trajectory", "phase", "energy", "impacts", "impact_inside", "hodograph", "contacts",
-    "joints", "forces", "constraint_errors",
+    "overview", "trajectory", "phase", "energy", "impacts", "impact_force", "impact_inside", "hodograph",
+    "contacts", "joints", "forces", "constraint_errors",
 )  # fmt: skip
 
 #: argument of each plot function that `what` is passed to
 WHAT = {
     "trajectory": "bodies", "phase": "of", "impacts": "contacts", "contacts": "contacts", "impact_inside": "k",
-    "hodograph": "k", "joints": "joints", "forces": "forces",
+    "impact_force": "k", "hodograph": "k", "joints": "joints", "forces": "forces",
 }  # fmt: skip
 
 
@@ -48,13 +48,14 @@ class Drawn(Shown):
         Parameters
         ----------
         kind : str
-            "overview" (default), "trajectory", "phase", "energy", "impacts", "impact_inside", "hodograph",
-            "contacts", "joints", "forces" or "constraint_errors": the function of `carom.plots` of this name.
+            "overview" (default), "trajectory", "phase", "energy", "impacts", "impact_force", "impact_inside",
+            "hodograph", "contacts", "joints", "forces" or "constraint_errors": the function of `carom.plots` of
+            this name.
         what : optional
             The parts to draw: names of bodies for "trajectory"; a body, coordinate or joint for "phase"; names
             of contacts for "impacts" and "contacts", of joints for "joints", of forces, motors and contacts for
-            "forces"; the index of an impact for "impact_inside" and
-            "hodograph". The other kinds do not use it.
+            "forces"; the index of an impact for "impact_force",
+            "impact_inside" and "hodograph". The other kinds do not use it.
         **options
             Other arguments of that function, for example ``ax`` to draw into existing axes.
 
@@ -68,6 +69,7 @@ class Drawn(Shown):
         from carom import checks
         from carom.visual import plots
 
+        kind = kind.replace(" ", "_") if isinstance(kind, str) else kind
         if isinstance(kind, str) and kind not in KINDS and (hint := ending("plot", kind, KINDS)):
             raise ValueError(
                 f"kind must be one of {', '.join(map(repr, KINDS))}, got {kind!r}{hint}"

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from carom.impact.force import duration, peak_force
-from carom.scene.stiffness import ABSOLUTE, Hertz, curvature_of
+from carom.scene.stiffness import ABSOLUTE, Hertz, Stiffness, curvature_of
 
 
 def stiff_impacts(solution, rows, mu, e, law) -> tuple[np.ndarray, np.ndarray]:
@@ -14,24 +14,35 @@ def stiff_impacts(solution, rows, mu, e, law) -> tuple[np.ndarray, np.ndarray]:
     They are NaN without a stiffness. A point of a multiple impact has the force by the work of its own
     compression, and no duration.
     """
-    pairs, scene = solution.pairs, solution.scene
+    pairs = solution.pairs
     peak, took = np.full((2, len(rows)), np.nan)
     numbers = rows.contact[rows.contact < len(pairs.body)]  # stops have no stiffness
     for number in np.unique(numbers).tolist():
-        stiffness = pairs.laws[pairs.law[number]].stiffness
-        if not isinstance(stiffness, ABSOLUTE):
+        stiffness = stiffness_of(solution, number)
+        if stiffness is None:
             continue
-        plane, other = pairs.plane[number], pairs.other[number]
-        partner = scene.fixed[plane] if plane >= 0 else scene.bodies[other]
-        curvature = curvature_of(scene.bodies[pairs.body[number]], partner)
-        if isinstance(stiffness, Hertz) and stiffness.radius is None and not curvature:
-            continue  # of two materials, on shapes that have no radius
-        k, n = stiffness._of(curvature)
+        k, n = stiffness.k, stiffness.exponent
         own = np.flatnonzero(rows.contact == number)
         peak[own] = peak_force(rows.compression_work[own], k, n)
         for i in own[(rows.together[own] == 1) & np.isfinite(mu[own] + e[own])].tolist():
             took[i] = _duration(rows[i], float(mu[i]), float(e[i]), str(law[i]), (k, n))
     return peak, took
+
+
+def stiffness_of(solution, number: int) -> Stiffness | None:
+    """Return the stated stiffness of a pair, by its number; None where there is none, or no radius."""
+    pairs, scene = solution.pairs, solution.scene
+    if number >= len(pairs.body):
+        return None
+    stiffness = pairs.laws[pairs.law[number]].stiffness
+    plane, other = pairs.plane[number], pairs.other[number]
+    partner = scene.fixed[plane] if plane >= 0 else scene.bodies[other]
+    if not isinstance(stiffness, ABSOLUTE):
+        return None
+    curvature = curvature_of(scene.bodies[pairs.body[number]], partner)
+    if isinstance(stiffness, Hertz) and stiffness.radius is None and not curvature:
+        return None  # of two materials, on shapes that have no radius
+    return Stiffness(*stiffness._of(curvature))
 
 
 def _duration(row, mu: float, e: float, law: str, stiffness: tuple[float, float]) -> float:

@@ -8,6 +8,7 @@ from carom.visual.plots.balance import energy
 from carom.visual.plots.coefficients import e_mu
 from carom.visual.plots.ensembles import ensemble
 from carom.visual.plots.errors import constraint_errors
+from carom.visual.plots.force_of_impact import impact_force
 from carom.visual.plots.glance import overview
 from carom.visual.plots.impacts_over_time import impacts
 from carom.visual.plots.joint_motion import joints
@@ -27,6 +28,7 @@ __all__ = [
     "ensemble",
     "forces",
     "hodograph",
+    "impact_force",
     "impact_inside",
     "impacts",
     "joints",
