@@ -129,7 +129,7 @@ def test_the_force_of_an_impact_is_drawn_by_its_stiffness():
         np.eye(3), (-1.0, 1.0, 0.0), 0.1, 0.5, stiffness=carom.Stiffness(1e6)
     )
     upper, lower = plots.impact_force(struck)
-    top = max(line.get_ydata().max() for line in upper.lines)
+    top = max(np.max(line.get_ydata()) for line in upper.lines)
     assert top == pytest.approx(struck.peak_force / 1e3, rel=1e-3)  # in kN
     assert lower.get_ylabel().startswith("depth")
     assert plots.impact_force(struck.force(), panel="depth").get_ylabel() == lower.get_ylabel()
