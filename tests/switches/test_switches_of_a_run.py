@@ -209,3 +209,17 @@ def test_a_belt_comes_off():
     with pytest.raises(ValueError, match="left out of a Belt"):
         scene.add_joint(joints.Belt(0.1, 0.1), *wheels, breaks_at=10.0)
     assert len(scene.constraints) == 1
+
+
+def test_what_begins_off_exerts_nothing_until_it_is_put_in():
+    scene = pendulum()
+    scene.add_force(forces.Force((0, 0, 5.0)), "bob", name="lift")
+    scene.add_force(forces.JointFriction("hinge", 0.3), name="brake")
+    for name in ("lift", "brake"):
+        scene.switch(name, at=2.0, off=False)
+    solution, plain = carom.simulate(scene, 0.5), carom.simulate(pendulum(), 0.5)
+    np.testing.assert_allclose(solution.position, plain.position, atol=1e-12)
+    assert np.all(solution["lift"].force == 0.0)
+    assert np.all(solution["brake"].torque == 0.0)
+    np.testing.assert_allclose(solution["hinge"].force, plain["hinge"].force, atol=1e-9)
+    assert len(solution.switches) == 0

@@ -24,7 +24,7 @@ class InSpans:
 
     @cached_property
     def _spans(self) -> list[Any]:
-        """The parts between switches; none if nothing was switched."""
+        """The parts between switches; none if all of the scene was there throughout."""
         return spans(self)  # pyright: ignore[reportArgumentType]
 
     def _by_span(self, read: Callable[[Any], np.ndarray]) -> np.ndarray:
@@ -49,17 +49,16 @@ class InSpans:
 
 
 def spans(solution: Solution) -> list[Solution]:
-    """Return the parts between switches in the order of time; none if nothing was switched.
+    """Return the parts between switches in the order of time; none if all of the scene was there throughout.
 
     Each begins with the row of the switch before, whose forces are those of the part before: the state at this
     time is that after the switch.
     """
     from carom.model.switched import stands_of
 
-    run = solution._run
-    if not len(run.switched):
+    stands = stands_of(solution.scene, solution._run.switched)
+    if len(stands) == 1 and not stands[0][1].off:
         return []
-    stands = stands_of(solution.scene, run.switched)
     ends = [*(row for row, _ in stands[1:]), len(solution.t)]
     rows = [(max(first - 1, 0), end) for (first, _), end in zip(stands, ends)]
     made = [
