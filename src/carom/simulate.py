@@ -167,7 +167,7 @@ def simulate(
         for an input that is nearly always a mistake: a free body that cannot touch anything although other
         bodies can, a contact without a stated restitution and friction, gravity that points away from the only
         half-space, a stop at an angle that is probably in degrees, a step that is longer than the run or far
-        too long for the motion.
+        too long for the motion, and a belt whose strand pushes.
     AccuracyWarning
         If the energy changes without an explanation in the ledger, or a body penetrates another body or a
         half-space.
@@ -234,7 +234,12 @@ def simulate(
 
 
 def after(solution, settings: Settings) -> tuple[str, ...]:
-    """Return sentences about stiff forces, and about a step that was far too long for the motion, if it was."""
+    """Return sentences about belts that push, stiff forces, and a step that was far too long for the motion."""
+    if isinstance(solution, Solution) and solution.scene.constraints and solution.status.ended:
+        from carom.results.belts import pushing_belts
+
+        if said := pushing_belts(solution):
+            return said
     stiff = tuple(said for said in getattr(solution, "warnings", ()) if isinstance(said, Advice))
     if stiff:  # with tolerances only
         return stiff

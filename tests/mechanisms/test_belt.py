@@ -1,5 +1,7 @@
 """Belts against gears and closed forms: motion, tensions, bearings, jerks; elastic strands, files, errors."""
 
+import warnings
+
 import numpy as np
 import pytest
 
@@ -294,3 +296,19 @@ def test_wheels_that_a_belt_cannot_join():
         scene.add_joint(joints.Belt(0.1, 0.1), "a", "b", name="belt1", replace=True)
     with pytest.raises(AttributeError, match="no Belt"):
         _ = carom.simulate(drive(None), 0.01)["gear"].tension
+
+
+@pytest.mark.parametrize(("tension", "pushes"), [(0.0, False), (1.0, True), (100.0, False)])
+def test_a_belt_whose_strand_pushes_is_said(tension, pushes):
+    scene, wheels = carom.Scene(gravity=(0, 0, 0)), []
+    for k in range(2):
+        wheel = scene.add_body(carom.Cylinder(0.1, 0.02), mass=1.0, position=(0.5 * k, 0, 0))
+        wheels.append(wheel)
+        scene.add_joint(joints.Revolute((0.5 * k, 0, 0), (0, 0, 1)), GROUND, wheel, name=f"axle{k}")
+    scene.add_joint(joints.Belt(0.1, 0.1, tension=tension), *wheels, name="belt")
+    scene.add_force(forces.JointForce("axle0", 1.0))
+    with warnings.catch_warnings(record=True) as said:
+        warnings.simplefilter("always")
+        carom.simulate(scene, 0.2)
+    # it transmits 5 N, half of which each strand takes
+    assert [("pushes with 1.5 N" in str(one.message)) for one in said] == [True] * pushes
