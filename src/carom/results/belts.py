@@ -18,8 +18,8 @@ def pushing_belts(solution) -> tuple[str, ...]:
         if least[k] < worst:
             worst = float(least[k])
             said = (
-                f"A strand of the belt {one.name!r} pushes with {-worst:.3g} N at t = {solution.t[k]:.6g} s: with "
-                f"a tension of {one.definition.tension:g} N it transmits at most twice as much. A real belt goes "
-                "slack there: state a greater tension, or one_sided=True, where a strand only pulls.",
+                f"A strand of the belt {one.name!r} pushes with {-worst:.3g} N at t = {solution.t[k]:.6g} s: "
+                f"with a tension of {one.definition.tension:g} N it transmits at most twice as much. A real "
+                "belt goes slack there: state a greater tension, or one_sided=True, where strands only pull.",
             )
     return said
