@@ -77,7 +77,7 @@ class Endless(Run):
         for name in GOES_ON:
             mine[name] = before[name]
         self.work.step["begin"] = mine.now
-        if old.stands.count:
+        if len(old.switched):
             self.switched = old.switched
             self.stand_as(old.stands)
         if self.tolerances is not None:

@@ -23,11 +23,11 @@ from carom.impact.resolve import (
     Contact,
     Line,
     Phase,
-    _along_curve,
-    _from_rest,
-    _straightened,
+    along_curve,
     along_line,
+    from_rest,
     scaled,
+    straightened,
     without_slip,
 )
 from carom.impact.slip_step import expand
@@ -62,9 +62,9 @@ def trace(W, u, mu, end, rows, units):
     for k in range(rows.shape[0]):
         if stopped:
             s = without_slip(m, s, size)
-            line = _from_rest(contact)
+            line = from_rest(contact)
         elif line.mode == BENT:
-            line = _straightened(contact, s)
+            line = straightened(contact, s)
         row = rows[k]
         for i in range(8):
             row[i] = s[i]
@@ -75,7 +75,7 @@ def trace(W, u, mu, end, rows, units):
                 row[11 + i], row[28 + i] = x[i], y[i]
             for i in range(16):
                 row[45 + i], row[61 + i] = r[i], q[i]
-            s, ended, _ = _along_curve(contact, phase, s)
+            s, ended, _ = along_curve(contact, phase, s)
         else:
             s, ended, _ = along_line(contact, phase, line, s)
         row[END] = s[3]

@@ -73,7 +73,7 @@ class ImpactForce:
         i = np.clip(np.searchsorted(self.t, times, side="right") - 1, 0, len(self.t) - 2)
         h = self.t[i + 1] - self.t[i]
         z = (times - self.t[i]) / h
-        # the derivative of the cubic of p, whose slope is F, times its round-off at the knots
+        # the derivative of the cubic of p(t) between two times, with p and its slope F given at both
         mean = (p[i + 1] - p[i]) / h
         found = F[i] + z * (2.0 * (3.0 * mean - 2.0 * F[i] - F[i + 1]))
         found = found + 3.0 * z * z * (F[i] + F[i + 1] - 2.0 * mean)
@@ -179,13 +179,50 @@ def force_in_time(
     W = np.asarray(stated["inverse_mass"], dtype=float)
     u0, mu = np.asarray(stated["relative_velocity_before"], dtype=float), float(stated["friction"])
     (p_c, end), (work_c, work_r) = impulse, works
-    course, power = Course(W, u0, mu, end), 1.0 / (n + 1.0)
-    ends = course.knots
+    course = Course(W, u0, mu, end)
     gives_back = end > p_c * (1.0 + NO_ENERGY) and work_r > NO_ENERGY * -work_c
     e_n = (work_r / -work_c) ** n if gives_back else 0.0  # e^(2n)
 
-    # p = p_c q^(n+1) in compression, end - p = (end - p_c) q^(n+1) in restitution; close to both ends the works
-    # are integrated from there, because differences would be round-off
+    t, p, F = [0.0], [0.0], [0.0]
+    times = [0.0]
+    for force, size, marks in _phases(course, (p_c, end), works, (k, e_n), n):
+        _follow(force, size, _fine(marks, knots), n, (t, p, F))
+        times.append(t[-1])
+    if not np.all(np.isfinite(t)):
+        raise ValueError(
+            "the contact opens within the impact and closes again (a jam by strong friction), so that no "
+            "single spring has its force"
+        )
+    made = np.array(p)
+    u, P, _, ratio = course.at(made)
+    forces, peak = np.array(F), float(peak_force(work_c, k, n))
+    depth = (forces / k) ** (1.0 / n)
+    if e_n > 0.0:
+        later = np.arange(len(t)) > np.searchsorted(t, times[1])
+        soft = k / e_n
+        depth[later] = (
+            (peak / k) ** (1.0 / n)
+            - (peak / soft) ** (1.0 / n)
+            + (forces[later] / soft) ** (1.0 / n)
+        )
+    return ImpactForce(
+        t=np.array(t), normal_force=forces, friction_force=forces[:, None] * ratio, depth=depth, velocity=u,
+        impulse=P, peak_force=peak, duration=t[-1], compression_time=times[1],
+        _stated={**stated, "k": k, "exponent": n},
+    )  # fmt: skip
+
+
+def _phases(
+    course: Course, impulse, works, stiffness: tuple[float, float], n: float
+) -> list[tuple]:
+    """Return compression, and restitution if there is any: each a force, a size of impulse and marks in q.
+
+    p = p_c q^(n+1) in compression and end - p = (end - p_c) q^(n+1) in restitution. The works are integrated
+    from both ends close to them, because differences would be round-off there.
+    """
+    (p_c, end), (work_c, work_r), (k, e_n) = impulse, works, stiffness
+    ends, power = course.knots, 1.0 / (n + 1.0)
+
     def loading(q: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
         p = p_c * q ** (n + 1.0)
         stored, first = np.maximum(-course.at(p)[2], 0.0), p <= ends[0]
@@ -203,37 +240,11 @@ def force_in_time(
     inside = ends[(ends > 0.0) & (ends < p_c)]
     marks = np.concatenate([[0.0], (inside / p_c) ** power, [1.0]])
     phases = [(loading, p_c, marks)]
-    if gives_back:
+    if e_n > 0.0:
         inside = ends[(ends > p_c) & (ends < end)]
         marks = np.concatenate([[1.0], ((end - inside) / (end - p_c)) ** power, [0.0]])
         phases.append((unloading, end - p_c, marks))
-    t, p, F = [0.0], [0.0], [0.0]
-    times = [0.0]
-    for force, size, marks in phases:
-        _follow(force, size, _fine(marks, knots), n, (t, p, F))
-        times.append(t[-1])
-    if not np.all(np.isfinite(t)):
-        raise ValueError(
-            "the contact opens within the impact and closes again (a jam by strong friction), so that no "
-            "single spring has its force"
-        )
-    made = np.array(p)
-    u, P, _, ratio = course.at(made)
-    forces, peak = np.array(F), float(peak_force(work_c, k, n))
-    depth = (forces / k) ** (1.0 / n)
-    if gives_back:
-        later = np.arange(len(t)) > np.searchsorted(t, times[1])
-        soft = k / e_n
-        depth[later] = (
-            (peak / k) ** (1.0 / n)
-            - (peak / soft) ** (1.0 / n)
-            + (forces[later] / soft) ** (1.0 / n)
-        )
-    return ImpactForce(
-        t=np.array(t), normal_force=forces, friction_force=forces[:, None] * ratio, depth=depth, velocity=u,
-        impulse=P, peak_force=peak, duration=t[-1], compression_time=times[1],
-        _stated={**stated, "k": k, "exponent": n},
-    )  # fmt: skip
+    return phases
 
 
 def _fine(marks: np.ndarray, knots: int) -> np.ndarray:
@@ -286,7 +297,7 @@ def of_stated(stated: dict[str, Any], stiffness) -> ImpactForce:
     solved = resolve_impact(*given)
     impulses = float(solved.compression_impulse[0]), float(solved.impulse[0])
     works = solved.compression_work, solved.restitution_work
-    return force_in_time(stated, impulses, works, *stiffness._of(stated.get("curvature")))
+    return force_in_time(stated, impulses, works, *stiffness._of(None))
 
 
 def of_record(record, stiffness) -> ImpactForce:

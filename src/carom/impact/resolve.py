@@ -143,19 +143,19 @@ def _follow(contact, u, e, law):
             if phases & o.PHASE_SLIP:
                 slip_end = (before[0] + s[3], s[2])
             s = without_slip(contact.m, s, contact.size)
-            line = _from_rest(contact)
+            line = from_rest(contact)
             if line.mode == STICK:
                 phases |= o.PHASE_STICK
             elif phases & o.PHASE_SLIP:
                 phases |= o.PHASE_RESTART
         elif line.mode == BENT:
-            line = _straightened(contact, s)
+            line = straightened(contact, s)
         if line.mode != STICK and mu > 0.0:
             phases |= o.PHASE_SLIP
 
         # One piece, until the phase ends or slip ends, or one step.
         if line.mode == BENT:
-            s, ended, marks = _along_curve(contact, phase, s)
+            s, ended, marks = along_curve(contact, phase, s)
         else:
             s, ended, marks = along_line(contact, phase, line, s)
         phases |= marks
@@ -184,7 +184,7 @@ def _follow(contact, u, e, law):
 
 
 @inlined
-def _from_rest(contact):
+def from_rest(contact):
     """Return the line along which the contact continues from u_t = 0 (§1.9, 2 and 3).
 
     It sticks to the end, or slip starts again along the outgoing ray.
@@ -198,7 +198,7 @@ def _from_rest(contact):
 
 
 @inlined
-def _straightened(contact, s):
+def straightened(contact, s):
     """Return the line of slip if its direction stays constant to round-off from here on, otherwise the curve.
 
     An attracting ray (df/dtheta < 0) is used as soon as the distance of u_t from it is round-off, because later
@@ -232,7 +232,7 @@ def _turning(m, mu, c, n):
 
 
 @kernel
-def _along_curve(contact, phase, s):
+def along_curve(contact, phase, s):
     """Take one step of turning slip; return the new state, the kind of end, and marks of the phases."""
     m, mu, size, law, goal = contact.m, contact.mu, contact.size, phase.law, phase.goal
     r, k = normal_rate(m, mu, s)

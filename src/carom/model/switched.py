@@ -23,17 +23,16 @@ NOTHING_SWITCHED = np.zeros(0, SWITCHED)
 
 
 class Stands(NamedTuple):
-    """Which parts a run is without, by name, how joints stand that were put in, and how many were switched."""
+    """Which parts a run is without, by name, and how joints stand that were put in."""
 
     off: frozenset[str] = frozenset()
     placed: Mapping[str, np.ndarray] = {}
-    count: int = 0
 
     def after(self, name: str, on: bool, placed: np.ndarray) -> Stands:
         """Return this after a part was switched."""
         off = self.off - {name} if on else self.off | {name}
         rest = {other: where for other, where in self.placed.items() if other != name}
-        return Stands(off, {**rest, name: placed} if on else rest, self.count + 1)
+        return Stands(off, {**rest, name: placed} if on else rest)
 
     def view(self, scene):
         """Return the scene as a run sees it; itself, if all of it is there as it states it."""

@@ -135,7 +135,7 @@ def intervals(solution) -> ContactTable:
 
 
 def switch_table(solution) -> SwitchTable:
-    """Return what was switched in a run."""
+    """Return the switches that acted in a run, one row for each part that they changed."""
     rows, scene = solution._run.switched, solution.scene
     parts = np.array([part.name for part in scene], dtype=str)
     names = np.array([*(one.name for one in scene.switches), ""], dtype=str)

@@ -28,7 +28,7 @@ class InSpans:
         return spans(self)  # pyright: ignore[reportArgumentType]
 
     def _by_span(self, read: Callable[[Any], np.ndarray]) -> np.ndarray:
-        """Return what is read from each part between switches, one after another (T, ...)."""
+        """Read an array from each part between switches, and join them over time (T, ...)."""
         first, *others = self._spans
         return np.concatenate([read(first), *(read(part)[1:] for part in others)])
 

@@ -29,7 +29,7 @@ class Stiffness:
     exponent: Number = number(1.0, above=0)
 
     def _of(self, curvature: float | None) -> tuple[float, float]:
-        """Return k and the exponent; the curvature of the pair does not count."""
+        """Return k [N/m^exponent] and the exponent; the curvature of the bodies does not matter."""
         return self.k, self.exponent
 
 
@@ -91,9 +91,9 @@ ABSOLUTE = (Stiffness, Hertz)
 
 
 def curvature_of(first, second) -> float:
-    """Return the sum of the curvatures of two parts where they touch [1/m]; 0 unless one is a ball, both round.
+    """Return the sum of the curvatures of two parts where they touch [1/m].
 
-    A half-space, and a face of a static box, are flat; other shapes than balls are not told by their kind.
+    It is 0 for other pairs than two balls, or a ball and a half-space: their curvature is not one number.
     """
     total = 0.0
     for part in (first, second):

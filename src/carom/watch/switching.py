@@ -103,17 +103,17 @@ class Loads:
         self.states, self.series = table(STATE, 2, len(run.now)), table(SERIES, 2)
         self.out = np.zeros((2, system.joints.size, 6))
         self.work = new_work(system, run.method.b.size)
-        self.time = np.nan
+        self.time, self.found = np.nan, np.zeros((1, system.joints.size, 6))
 
     def of(self, joint: Joint, look: Observed) -> tuple[np.ndarray, np.ndarray]:
         """Return force and torque of a joint on its child."""
         if self.solves:
             reaction = look.state.joint_reactions[joint.index]
-            return reaction[:3], reaction[3:]
-        if look.t != self.time:
-            self.solve(look.run)
-            self.time = look.t
-        reaction = self.found[0, joint.index]
+        else:
+            if look.t != self.time:
+                self.solve(look.run)
+                self.time = look.t
+            reaction = self.found[0, joint.index]
         return reaction[:3], reaction[3:]
 
     def solve(self, run) -> None:
@@ -147,17 +147,17 @@ def switch(run, part, on: bool, number: int = -1) -> bool:
     placed = pose_of_child(part, run.now) if on and isinstance(part, Joint) else np.zeros(7)
     run.stand_as(run.stands.after(part.name, on, placed))
     note_opened(run, points)
-    entered = [(part, placed)]
+    entered: dict[Any, np.ndarray] = {part: placed}
     if on:
         view = run.stands.view(run.scene)
-        entered += enter(run, part, [one for one in absent if not is_off(view, one)])
+        entered |= enter(run, part, [one for one in absent if not is_off(view, one)])
         refuse_inside(run, known)
     save_again(run, before)
-    for one, where in dict(entered).items():
+    for one, where in entered.items():
         note_switched(run, one, on, number, where)
     after = run.clock[0]
     given = after.kinetic + after.potential - before["kinetic"] - before["potential"]
-    run.switched["energy"][-len(dict(entered))] = given
+    run.switched["energy"][-len(entered)] = given
     return True
 
 
@@ -170,12 +170,12 @@ def note_switched(run, part, on: bool, number: int, placed: np.ndarray) -> None:
     run.switched = np.append(run.switched, row)
 
 
-def enter(run, part, relations: list[Constraint]) -> list[tuple[Constraint, np.ndarray]]:
+def enter(run, part, relations: list[Constraint]) -> dict[Constraint, np.ndarray]:
     """Let a joint and relations that were put in begin as the bodies stand; take away what they forbid.
 
-    Return the relations, and the constants with which they begin.
+    Return the constant with which each relation begins.
     """
-    system, placed = run.compiled.system, []
+    system, placed = run.compiled.system, {}
     run.work.moment[0].time = run.reached
     for (joint, _), k in run.compiled.numbers.items():
         if isinstance(part, Joint) and joint == part.index:
@@ -190,7 +190,7 @@ def enter(run, part, relations: list[Constraint]) -> list[tuple[Constraint, np.n
         relation.constant += errors[0, element, 0]
         constant = np.zeros(7)
         constant[0] = relation.constant
-        placed.append((one, constant))
+        placed[one] = constant
         run.stands = run.stands.after(one.name, True, constant)
     if isinstance(part, Joint) or relations:
         project_start(system, run.now, run.work)

@@ -47,7 +47,7 @@ def from_rows(data: memoryview, note, scene) -> list[tuple[int, int, Any]] | Non
 
 
 def switched_from(data: memoryview, note, scene) -> np.ndarray:
-    """Return what was switched in a run, from its length and place in a file.
+    """Read the switches that acted in a run, in the order of time.
 
     Raises
     ------
