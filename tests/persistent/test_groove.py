@@ -38,6 +38,17 @@ def test_its_place_depends_on_the_tolerance_alone(seed, rtol):
     assert runs[0].position[-1] == pytest.approx(runs[1].position[-1], abs=1e-7)
 
 
+@pytest.mark.parametrize(("seed", "most"), [(41, 5e-9), (32, 2e-8)])
+def test_a_corner_stops_by_the_motion_where_the_face_arrives(seed, most):
+    """A corner that another wall holds has no speed when its face falls flat: the body turns about it then.
+
+    The last step before that, shorter than friction needs to move a body by the tolerance, took the force of
+    stick for all of its length, and what slid on got 1e-6 m/s: the ends were 3e-8 and 6e-8 m apart.
+    """
+    runs = [carom.simulate(groove(seed), 1.0, rtol=tol) for tol in (1e-8, 1e-11)]
+    assert runs[0].position[-1] == pytest.approx(runs[1].position[-1], abs=most)
+
+
 @pytest.mark.parametrize(
     ("seed", "rtol", "most"), [(2, 1e-8, 200), (2, 1e-10, 200), (20, 1e-9, 120), (34, 1e-11, 300)]
 )

@@ -66,6 +66,16 @@ def time_of_hop(z0, rate0, z1, rate1, h, tiny):
     return safe_time(z0, rate0, z1, rate1, h, tiny) if rate0 > 0.0 else 0.0
 
 
+@inlined
+def arrives(z0, rate0, z1, rate1, tiny, still):
+    """Return whether a point that is off the surface, or leaves it, touches it at the end, and approaches.
+
+    In the next step it would be one that touches and is pushed in, and a hop may be lower than `tiny`: it is
+    struck before that step.
+    """
+    return abs(z1) <= tiny and rate1 < -still and (z0 > tiny or rate0 > still)
+
+
 @kernel
 def cubic_root(a, f, r, b, f_last, r_last):
     """Return a root of the cubic with values f and rates r at a and b, by Newton's method from b."""

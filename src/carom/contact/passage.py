@@ -19,6 +19,7 @@ from carom.contact.continuous_detection import (
     CLEAR,
     FLAT_RIM,
     UNSURE,
+    arrives,
     cubic_clears,
     time_of_hop,
 )
@@ -168,6 +169,8 @@ def passage_between(model, data, c, step, at_end):
     nearest = nearest_touch(work)
     gap, rate0, alike = nearest.gap, touch_rate(contact, nearest, start), nearest.feature == feature
     first, _ = time_apart(system, contact, start, step.bounds, step.h, work)
+    if arrives(gap, rate0, least, rate, step.tiny, slow(contact, work.trial)):
+        data.active.contact_states[c].near = 1
     follows = alike and smooth
     if follows and cubic_clears(gap, rate0, least, rate, step.h, step.tiny):
         return CLEAR, first

@@ -28,6 +28,7 @@ from carom.model.actions import (
 )
 from carom.persistent.finish import check_end, note_modes, write_end
 from carom.persistent.members import explicit_member, implicit_member
+from carom.persistent.return_to_surfaces import leave_undetermined
 from carom.persistent.rows import beyond_stop
 from carom.persistent.springs import FACTORED, count_factors
 from carom.persistent.start import first_modes, first_stage
@@ -141,21 +142,24 @@ def step_group(model, data, method, label, h):
         search.stiff = 1
     if not (order > 0 and 0.5 * h * h * push <= closing_size(model, data, label)):
         first_modes(model.system, data, label)
-        ended, applied, friction = end_implicitly(
+        ended, _, applied, friction = end_implicitly(
             model, data, (method.stiff, False), label, h, powers
         )
-        if ended:
+        if ended > 0:
             note_errors(model, data, method.stiff_E, label, 0, h)
             if order > 0:
                 search.order = min(order, STIFF_ORDER)
             note_unnamed(model, data, label, friction + applied, 0.0, push)
             return applied, friction, 0
     first_modes(model.system, data, label)
-    ended, applied, friction = end_implicitly(model, data, (method.closing, True), label, h, powers)
-    if not ended:
+    ended, turned, applied, friction = end_implicitly(
+        model, data, (method.closing, True), label, h, powers
+    )
+    if ended == 0:
         return applied, friction, CONSTRAINTS_LOST
-    lets_go = order > 0 and opens(data, label)
-    if lets_go:
+    changes = order > 0 and (turned or opens(data, label))
+    if changes:
+        leave_undetermined(model.system, data, ended, label)
         note_errors(model, data, method.closing_E, label, 0, h)
     for m in range(members(work, label, group.bodies.member)):
         miss, b = work.body[group.bodies.member[m]].miss, group.bodies.member[m]
@@ -164,7 +168,7 @@ def step_group(model, data, method, label, h):
     note_unnamed(model, data, label, friction + applied, h, push)
     friction -= lost_in_stop(model, data, label, friction + applied)
     if order > 0:
-        search.order = 1 if lets_go else CLOSING_ORDER
+        search.order = 1 if changes else CLOSING_ORDER
     return applied, friction, 0
 
 
@@ -172,30 +176,27 @@ def step_group(model, data, method, label, h):
 def end_implicitly(model, data, method, label, h, powers):
     """Step a group by a stiff method, and write its end, as `implicit_member` says.
 
-    Return whether there is one, and the work of loads and of friction.
+    Return the number of its points, 0 if there is none, whether friction has changed in it, and the work of
+    loads and of friction.
     """
     k, applied, friction = implicit_member(model, data, method, label, h, powers)
     A, closes = method
     if k == 0:
-        return False, applied, friction
+        return 0, False, applied, friction
     if not closes:
         note_left(model, data, k)
-    note_modes(model, data, k, h)
+    turned = note_modes(model, data, k, h)
     joined, driven = write_end(model, data, label, k)
     applied += driven
     if not joined:
-        return False, applied, friction
+        return 0, False, applied, friction
     _, driven, rubbed = check_end(model, data, label, A.shape[0], h, False)
-    return True, applied + driven, friction + rubbed
+    return k, turned, applied + driven, friction + rubbed
 
 
 @kernel
 def opens(data, label):
-    """Return whether a point of a group opens at the end of the step.
-
-    Rows at the end of a closing step give the impulses of what still presses or sticks there, however friction
-    has changed in between; the impulse of what has let go is known but to h times its force.
-    """
+    """Return whether a point of a group opens at the end of the step."""
     for i in range(data.active.count[0]):
         active_point = data.active.points[i]
         if data.work.body[active_point.body].label == label:

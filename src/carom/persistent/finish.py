@@ -31,7 +31,13 @@ from carom.persistent.margins import (
     take_forces,
     time_to_stop,
 )
-from carom.persistent.memory import first_stop, is_torque, memory_of, store_slip
+from carom.persistent.memory import (
+    first_stop,
+    is_torque,
+    memory_of,
+    slip_at_start,
+    store_slip,
+)
 from carom.persistent.return_to_surfaces import (
     greatest_speed,
     onto_sticking,
@@ -64,6 +70,7 @@ from carom.persistent.thresholds import (
     FRICTION_LIMIT,
     NO_MARGIN,
     STAYING_SPEED,
+    TURNED,
 )
 
 
@@ -104,8 +111,9 @@ def note_modes(model, data, k, h):
 
     What is on its disc at rest sticks: whether it slips is seen at the start of the next step. A slip that no
     friction could have stopped in the step goes on, whatever round-off has left of its force in a short step.
+    Return whether slip begins, ends or turns.
     """
-    active, group, controls = data.active, data.group, model.controls
+    active, group, controls, turned = data.active, data.group, model.controls, False
     still = controls.rest * greatest_load(k, group) * controls.step
     for i in range(k):
         closed_point, u, p = group.closed[i], group.u, group.p
@@ -121,10 +129,13 @@ def note_modes(model, data, k, h):
             continue
         slides = group.problem.kind[i] == SLIDING and slip > 0.0
         d1, d2 = u[3 * i + 1] / slip if slides else 0.0, u[3 * i + 2] / slip if slides else 0.0
+        _, b1, b2, _ = slip_at_start(model.system, active, closed_point)
+        turned = turned or (group.problem.mu[i] > 0.0 and math.hypot(d1 - b1, d2 - b2) > TURNED)
         store_slip(model.system, active, closed_point, d1, d2, slip if slides else 0.0)
         if not is_torque(closed_point) and group.problem.mu[i] > 0.0:
             next_mode = MODE_SLIP if group.problem.kind[i] == SLIDING else MODE_STICK
             memory_of(model.system, active, closed_point).next = next_mode
+    return turned
 
 
 @kernel

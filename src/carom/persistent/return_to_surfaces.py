@@ -14,6 +14,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom.contact.closed_points import place_closed
 from carom.contact.gap import round_off
+from carom.contact.groups import members
 from carom.contact.operations import rounding
 from carom.contact.passed_edges import has_passed
 from carom.dynamics.contact_impulse import gain
@@ -144,6 +145,44 @@ def onto_tangents(system, data, k, count):
         for i in range(k):
             driven += power_of_surface(group.points[0][i], state, x[3 * i : 3 * i + 3])
     return driven
+
+
+@kernel
+def leave_undetermined(system, data, k, label):
+    """Write to stage 2 what forces have changed in a closing step that rows at its end do not determine.
+
+    Stages 0 and 1 have the accelerations at its start and those that made the step. Where rows at the end bind
+    all motion (a box whose slip stops on a floor), they give its velocity whatever friction has done in
+    between. They do not where the last support opens, and at a dead centre: a corner of a face that falls flat
+    on one wall stops on another, and what slides on has other forces from then on.
+    """
+    state, group, work = data.work.stage, data.group, data.work
+    count = members(work, label, group.bodies.member)
+    for m in range(count):
+        b = group.bodies.member[m]
+        first, second = work.stages[0, b].rate, work.stages[1, b].rate
+        for r in range(3):
+            state[b].v[r] = second[r] - first[r]
+            state[b].w[r] = second[3 + r] - first[3 + r]
+    tiny = SUM_ERROR * greatest_speed(system, state, count, group.bodies.member)
+    velocities(system, k, group.points[0], state, group.back)
+    for m in range(count):
+        b = group.bodies.member[m]
+        for r in range(3):
+            state[b].v[r], state[b].w[r] = 0.0, 0.0
+    velocities(system, k, group.points[0], state, group.u)  # those of surfaces that move
+    for i in range(3 * k):
+        group.back[i] -= group.u[i]
+    mark_tangents(data.active, k, group)
+    n = factor_given(k, False, group)
+    solve_rows(k, n, tiny, group, group.back)
+    spread_all(system, group.points[0, :k], group.back, group.bodies.member[:count], state, work)
+    for m in range(count):
+        b = group.bodies.member[m]
+        left, first, second = work.stages[2, b], work.stages[0, b].rate, work.stages[1, b].rate
+        left.speed[:], left.turn[:] = 0.0, 0.0
+        for r in range(6):
+            left.rate[r] = second[r] - first[r] + work.body[b].motion[r]
 
 
 @kernel

@@ -24,6 +24,7 @@ STAYING_SPEED = 1e-6  #: speed that forces give in a step: away from a surface: 
 STIFF_SLIP = 1.5  #: speed of slip: change by friction in a step above which its direction is stiff
 SLIP_COSINE = 0.5  #: cosine of the angle: least between directions of slip in a step
 MOST_BOUNCES = 50  #: 1: bounces with the e of their own speed, before those that a formula adds up
+TURNED = 1e-3  #: 1: change of the direction of slip in a closing step that is no change of friction
 STOPPED_SLIP = 1e-3  #: slip at the start: with less at the end the direction is that of the start: it stops
 FALLS = 100.0  #: fall through the size: an error of velocity counts so long; what moves slower is at rest
 #: W_nn: a point jams at k below this: at 0 its force has no bound, which no step can follow

@@ -16,6 +16,7 @@ from carom.contact.continuous_detection import (
     BELOW,
     CLEAR,
     UNSURE,
+    arrives,
     cubic_clears,
     safe_time,
     time_of_hop,
@@ -182,6 +183,8 @@ def passage(model, data, c):
         if z0 <= tiny and (slightly or (z0 < -tiny and z1 >= z0)):
             return CLEAR, 0.0
         return BELOW, 2.0 * safe_time(z0, rate0, z1, rate1, h, tiny)
+    if arrives(z0, rate0, z1, rate1, tiny, slow(contact, work.trial)):
+        data.active.contact_states[c].near = 1
     leaving = data.active.contact_states[c].leaving
     if leaving == 0 and not cubic_clears(z0, rate0, z1, rate1, h, tiny):
         return UNSURE, 0.0

@@ -10,6 +10,7 @@ from carom.contact.continuous_detection import (
     BELOW,
     CLEAR,
     UNSURE,
+    arrives,
     cubic_clears,
     cubic_root,
     reach,
@@ -145,6 +146,7 @@ def passage(model, data, c):
         return CLEAR, h
     verdict, first, flies = CLEAR, h, work.body[contact.body].status == FREE
     tiny = max(model.controls.gap * contact.extent, round_off(contact, end))
+    still = slow(contact, end)
     sag = 0.125 * a * h * h  # bound of the distance of a path from its chord
     smooth = not flies or sag <= RESOLUTION * contact.extent
     before, after = plane_in_body(contact, start), plane_in_body(contact, end)
@@ -169,6 +171,8 @@ def passage(model, data, c):
             and not (smooth and cubic_clears(z0, rate0, z1, rate1, h, tiny))
         ):
             verdict = UNSURE
+        if arrives(z0, rate0, z1, rate1, tiny, still):
+            data.active.contact_states[c].near = 1
     return verdict, first
 
 
