@@ -20,7 +20,7 @@ from carom.model.cores import Cores, new_cores, singly, swollen_alike
 from carom.model.laws import LawTable
 from carom.model.level_surfaces import find_levels, note_own, with_level_rows
 from carom.model.moving_surfaces import write_fields
-from carom.model.thresholds import LAYER_WIDTH, STILL_SPEED
+from carom.model.thresholds import LAYER_WIDTH, LEAST_SPEED, STILL_SPEED
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, meeting
 from carom.scene.friction import FIXED_TO, anisotropy_of
@@ -186,7 +186,7 @@ def _rows(scene, options: Options, pairs: PairTable, which: Rows, surfaces: Surf
     write_kinds(rows, surfaces.solids)
     note_own(rows, surfaces.levels)
     extent = rows["extent"]
-    rows["still"] = STILL_SPEED * _speed(scene, extent)
+    rows["still"] = np.maximum(STILL_SPEED * _speed(scene, extent), LEAST_SPEED)
     rows["width"] = LAYER_WIDTH * extent if options.layer_width is None else options.layer_width
     rows["penetration"] = options.penetration
     return rows

@@ -9,7 +9,7 @@ from carom.model.arrays import CONTACT
 from carom.model.contact_kinds import OF_JOINT
 from carom.model.laws import LawTable
 from carom.model.relations import Elements
-from carom.model.thresholds import DIRECTION, LAYER_WIDTH, STILL_SPEED
+from carom.model.thresholds import DIRECTION, LAYER_WIDTH, LEAST_SPEED, STILL_SPEED
 from carom.scene.coordinates import Combination, Gap
 from carom.scene.materials import IMPACT_LAWS
 from carom.scene.switches import is_off
@@ -42,7 +42,8 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, laws: 
         if stop.joint.can_be_left:
             curve = stop.joint.definition.curve  # pyright: ignore[reportAttributeAccessIssue]
             row.extent = row.other_extent = max(size, np.ptp(curve.ends[:, 0], axis=0).max())
-    rows.still = STILL_SPEED * np.sqrt(np.linalg.norm(scene.gravity) * rows.extent)
+    fall = np.sqrt(np.linalg.norm(scene.gravity) * rows.extent)
+    rows.still = np.maximum(STILL_SPEED * fall, LEAST_SPEED)
     for row, stop in zip(rows, stops):
         if stop.joint.can_be_left:  # its direction is that of the table of the curve
             fall = np.linalg.norm(scene.gravity) * stop.joint.definition.curve.length

@@ -6,5 +6,6 @@ DIRECTION = 1e-11  #: speed: error of the direction of a curve: slower approache
 #: greatest value of a law: jump of a derivative, times powers of the width of a piece, that is a kink
 LAW_KINK = 1e-8
 EQUAL_MOMENTS = 1e-13  #: greatest moment: a difference that is round-off: the moments are equal
+LEAST_SPEED = 1e-60  #: m/s: nothing that is slower moves in any run; without gravity and motion no other scale
 STILL_SPEED = 1e-14  #: speed of a fall by the size of the body, or of the start: that counts as zero
 LAYER_WIDTH = 1e-5  #: size of the body: b of the boundary layer (`Options.layer_width`)

@@ -39,7 +39,7 @@ from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.finish import add_forces_of_corners
 from carom.persistent.jam import jams_among, note_jam
 from carom.persistent.joint_load import has_loads, note_responses
-from carom.persistent.joint_rows import add_frictions, greatest_load
+from carom.persistent.joint_rows import add_frictions, greatest_load, still_speed
 from carom.persistent.margins import take_forces
 from carom.persistent.points import weigh
 from carom.persistent.return_to_surfaces import onto_surfaces
@@ -122,9 +122,9 @@ def pose_forces(model, data, k, label):
     accelerate_start(model, data, label)
     write_pulls(system, data.active, k, data.state, group)
     write_motion(system, k, data.state, work.stages[0], group, work)
-    still = controls.rest * greatest_load(k, group) * controls.step
+    push = greatest_load(k, group)
     for i in range(k):
-        d1, d2, _ = slip_of(system, data, i, still)
+        d1, d2, _ = slip_of(system, data, i, still_speed(i, push, controls, group))
         group.problem.kind[i] = SLIDING if d1 != 0.0 or d2 != 0.0 else CONE
         group.problem.heading[i, 0], group.problem.heading[i, 1] = d1, d2
         set_friction(system, i, group.problem.kind[i] == SLIDING, group)

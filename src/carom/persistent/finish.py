@@ -23,7 +23,7 @@ from carom.persistent.active_set import clear
 from carom.persistent.adhesion import pulled
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.jam import jams_among
-from carom.persistent.joint_rows import greatest_load, place_drives, radius_of
+from carom.persistent.joint_rows import greatest_load, place_drives, radius_of, still_speed
 from carom.persistent.margins import (
     greatest_push,
     set_grip,
@@ -114,9 +114,10 @@ def note_modes(model, data, k, h):
     Return whether slip begins, ends or turns.
     """
     active, group, controls, turned = data.active, data.group, model.controls, False
-    still = controls.rest * greatest_load(k, group) * controls.step
+    push = greatest_load(k, group)
     for i in range(k):
         closed_point, u, p = group.closed[i], group.u, group.p
+        still = still_speed(i, push, controls, group)
         slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
         force = math.hypot(p[3 * i + 1], p[3 * i + 2])
         # of a point that does not press, round-off is no friction left

@@ -79,6 +79,17 @@ def place_coordinate(system, i, t, point):
 
 
 @kernel
+def still_speed(i, push, controls, group):
+    """Return the speed of slip of entry i that is round-off: a part of what accelerates its points in a step.
+
+    A joint that only its own friction acts on is slowed down by that, and by nothing else.
+    """
+    if group.closed[i].motion == MOTION_JOINT:
+        push = max(push, group.problem.mu[i] * group.problem.W[3 * i + 1, 3 * i + 1])
+    return controls.rest * push * controls.step
+
+
+@kernel
 def greatest_load(k, group):
     """Return the greatest acceleration of the k points by all but their forces, and by drives that may slip.
 

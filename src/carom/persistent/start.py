@@ -16,7 +16,7 @@ from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.model.workspace import CONSTANT, MOTION_JOINT, MOTION_POINT
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.finish import gains, within_cones
-from carom.persistent.joint_rows import greatest_load, radius_of
+from carom.persistent.joint_rows import greatest_load, radius_of, still_speed
 from carom.persistent.memory import is_torque, memory_of, store_slip
 from carom.persistent.rows import (
     accelerate_freely,
@@ -71,7 +71,7 @@ def first_stage(model, data, label):
     push = greatest_load(k, group)
     known = True
     for i in range(k):
-        known = find_slip(model, data, i, controls.rest * push * controls.step) and known
+        known = find_slip(model, data, i, still_speed(i, push, controls, group)) and known
     set_modes(system, data.active, k, group)
     found, held = True, known and solve_springs(k, group)
     shared = held and within_cones(k, group)
