@@ -12,6 +12,7 @@ import hashlib
 from functools import cache
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
@@ -24,6 +25,8 @@ from numba.extending import (
     register_model,
     unbox,
 )
+
+from carom._compiled.record_arrays import ARRAY_FLAGS, Columns
 
 
 class Reference(types.Type):
@@ -50,6 +53,10 @@ class Reference(types.Type):
         return self.record.types
 
 
+_ARRAYS = np.ndarray, Columns
+_KINDS: dict[tuple, types.Type] = {}  # types of arrays; those of a scene are 100, on 800 arrays
+
+
 @cache
 def _reference(record: Any) -> Reference:
     return Reference(record)
@@ -65,6 +72,12 @@ def _type_of(value):
     if isinstance(value, tuple):
         kinds = [type_of(v) for v in value]
         return types.BaseTuple.from_types(kinds, type(value))
+    if type(value) in _ARRAYS:
+        dtype, flags = value.dtype, value.flags.num & ARRAY_FLAGS
+        key = dtype, dtype.isalignedstruct, value.ndim, flags
+        if key not in _KINDS:
+            _KINDS[key] = typeof(value, Purpose.argument)
+        return _KINDS[key]
     try:
         kind = typeof(value, Purpose.argument)
     except ValueError:

@@ -76,15 +76,18 @@ def entry(function):
     If no directory is writable (a read-only install without a user cache), it is compiled in each process.
     """
     compiled = jit(**RULES, **_OUTSIDE)(function)
-    return keep_on_disk(compiled, function)
+    cache = files_of(function)
+    if cache is not None:
+        compiled._cache = cache
+    return compiled
 
 
-def keep_on_disk(compiled, function):
-    """Store compiled code in files beside the source, or in the cache of the user."""
+def files_of(function, linked: bool = True) -> StampedCache | None:
+    """Return the files of compiled code, beside the source or in the cache of the user, or None."""
     if COMPILES:
         with contextlib.suppress(RuntimeError):  # no writable place for a cache
-            compiled._cache = StampedCache(function)
-    return compiled
+            return StampedCache(function, linked)
+    return None
 
 
 def _same(record):

@@ -86,6 +86,14 @@ class Library(codegen.JITCodeLibrary):
         names = [part.name for part in parts if not part.is_declaration]
         return self.name, "object", (code, names, module.as_bitcode())
 
+    def symbols_needed(self) -> list[str]:
+        """Return the symbols that the code needs and that this process finds."""
+        module: Any = self._final_module
+        parts = [
+            one.name for one in (*module.functions, *module.global_variables) if one.is_declaration
+        ]
+        return [name for name in parts if name[:5] != "llvm." and llvm.address_of_symbol(name)]
+
     @classmethod
     def _unserialize(cls, codegen, state):
         name, _, (code, names, unread) = state

@@ -106,7 +106,7 @@ def _cache() -> tuple[dict[str, Any], list[str]]:
     package = Path(time_loop.__file__).parents[1]
     if top.is_relative_to(package):  # beside the source
         top = package
-    size = sum(file.stat().st_size for file in top.rglob("*.nb[ic]"))
+    size = sum(file.stat().st_size for file in top.rglob("*.nbc"))
     found = {"folder": str(folder), "megabytes": size / 1e6}
     if not os.access(folder, os.W_OK):
         return found, [f"{folder} is not writable: set NUMBA_CACHE_DIR to a writable folder"]
