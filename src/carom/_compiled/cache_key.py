@@ -71,6 +71,8 @@ def _own(function: Callable) -> Own:
     names = _names(code)
     for name in names:
         value = near.get(name, function.__globals__.get(name))
+        if value is None:  # most names are of fields
+            continue
         if isinstance(value, types.ModuleType) and value.__name__.startswith("carom"):
             inside = vars(value)
             pairs = [(inner, inside[inner]) for inner in names if inner in inside]

@@ -95,8 +95,8 @@ class Unit:
     is_unit = True  # for stamps
 
     def __init__(self, function: Callable):
-        self._function, self._given = function, inspect.signature(function)
-        self.returned = _returned(self._given.return_annotation)
+        self._function = function
+        self.returned = _returned(function.__annotations__.get("return"))
         self.__name__, self.__qualname__ = function.__name__, function.__qualname__
         self.__module__, self.__doc__ = function.__module__, function.__doc__
         #: its code in this process: address and library, by the hash of its types
@@ -130,9 +130,8 @@ class Unit:
             return self.returned(*kinds), generate
 
         name = f"{self.__module__}:{self.__qualname__}"
-        own = [
-            p.replace(annotation=inspect.Parameter.empty) for p in self._given.parameters.values()
-        ]
+        given = inspect.signature(self._function).parameters.values()
+        own = [one.replace(annotation=inspect.Parameter.empty) for one in given]
         first = inspect.Parameter("typing", inspect.Parameter.POSITIONAL_OR_KEYWORD)
         call.__signature__ = inspect.Signature([first, *own])  # pyright: ignore[reportFunctionMemberAccess]
         call.__name__, call.__qualname__ = self.__name__, self.__qualname__
@@ -169,7 +168,7 @@ def _separate(function) -> Unit:
 
 def _returned(annotation) -> types.Type:
     """Return the type of the result of a unit, from the text of its annotation."""
-    if annotation is inspect.Signature.empty:
+    if annotation is None:
         return types.none
     if annotation.startswith("tuple["):
         return types.Tuple([_RETURNS[part.strip()] for part in annotation[6:-1].split(",")])
