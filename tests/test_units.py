@@ -166,7 +166,7 @@ def test_each_unit_has_one_type_for_all_scenes_and_methods():
     for seen in (run.state, run.solution, carom.simulate(scene, 0.05)):
         assert np.shape(seen.joint_reactions)[-1] == 6
     seen.evaluate(0.02)
-    assert len(time_loop.run.overloads) == 1
+    assert len(time_loop.run.dispatcher.overloads) == 1
     ours = {name: made for name, made in UNITS.items() if name.startswith("carom.")}
     assert [name for name, made in ours.items() if len(made.loaded) > 1] == []
 

@@ -15,13 +15,14 @@ import errno
 import hashlib
 import os
 import pickle
+import struct
 import uuid
 import warnings
 import zlib
 from collections.abc import Callable
 from functools import cache, cached_property
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import IO, Any, NamedTuple
 
 import llvmlite
 import llvmlite.binding as llvm
@@ -42,7 +43,6 @@ class Machine(NamedTuple):
     """The first part of a file: machine code, and what tells whether it can be used."""
 
     stamp: str  # of the function and the versions for which it is valid
-    check: int  # of the code: a file may be damaged
     library: tuple[
         str, str, tuple
     ]  # the state of a `carom._compiled.target.Library`, without LLVM code
@@ -52,11 +52,7 @@ class Machine(NamedTuple):
 
     def is_valid(self, wanted: str) -> bool:
         """Return whether the code is that of a stamp, and can be loaded into this process."""
-        return (
-            self.stamp == wanted
-            and zlib.crc32(self.library[2][0]) == self.check
-            and all(map(llvm.address_of_symbol, self.needs))
-        )
+        return self.stamp == wanted and all(map(llvm.address_of_symbol, self.needs))
 
 
 def digest_of(signature: Any) -> str:
@@ -130,7 +126,7 @@ class StampedCache(_Cache):
         codegen = target_context.codegen()
 
         def rebuild(machine: Machine, file):
-            unread, *rest = pickle.load(file)
+            unread, *rest = _read_part(file)
             name, kind, (code, names, _) = machine.library
             state = name, kind, (code, names, unread)
             return self._impl.rebuild(target_context, (state, *rest))
@@ -144,7 +140,7 @@ class StampedCache(_Cache):
                 contextlib.suppress(Exception),  # a damaged file may cause any error of unpickling
                 open(place / self._file_name(digest, codegen), "rb") as file,
             ):
-                machine = pickle.load(file)
+                machine = _read_part(file)
                 if machine.is_valid(self._stamp):
                     return use(machine, file)
         return None
@@ -183,7 +179,7 @@ class StampedCache(_Cache):
         # each kernel has an environment, for Python objects that its code uses; those of a die are 1900
         environments = tuple(one for one in environments if one.consts)
         machine = Machine(
-            self._stamp, zlib.crc32(code), (of, kind, (code, names, None)), compiled.fndesc.llvm_func_name,
+            self._stamp, (of, kind, (code, names, None)), compiled.fndesc.llvm_func_name,
             compiled.library.symbols_needed(), not reload and not environments,
         )  # fmt: skip
         second = (
@@ -196,7 +192,7 @@ class StampedCache(_Cache):
         self._impl.locator.ensure_cache_path()
         unfinished = self._place / f"{name}.tmp.{uuid.uuid4().hex[:16]}"
         try:
-            unfinished.write_bytes(dumps(machine) + dumps(second))
+            unfinished.write_bytes(_part(machine) + _part(second))
             os.replace(unfinished, self._place / name)
         except OSError:
             unfinished.unlink(missing_ok=True)
@@ -237,6 +233,31 @@ class StampedCache(_Cache):
     @property
     def _asked_file(self) -> Path:
         return self._place / f"{self._impl.filename_base}.asked"
+
+
+_HEAD = struct.Struct("<QI")  # of a part of a file: its length and a checksum
+
+
+def _part(content: tuple) -> bytes:
+    data = dumps(content)
+    return _HEAD.pack(len(data), zlib.crc32(data)) + data
+
+
+def _read_part(file: IO[bytes]) -> Any:
+    """Return the content of the next part; any error means that the file is damaged."""
+    length, check = _HEAD.unpack(file.read(_HEAD.size))
+    data = file.read(length)
+    if zlib.crc32(data) != check:
+        raise ValueError("a damaged file")
+    return pickle.loads(data)
+
+
+def files_of(function: Callable, linked: bool = True) -> StampedCache | None:
+    """Return the files of a function, beside its source or in the cache of the user; None without a place."""
+    try:
+        return StampedCache(function, linked)
+    except (RuntimeError, OSError):  # no writable place for a cache
+        return None
 
 
 @cache

@@ -87,6 +87,7 @@ def _add_value(name: str, value: object, texts: list[str], called: list[Callable
     """Add the text of a global: of a constant, a kernel or a unit; and the functions that it brings."""
     if isinstance(value, _CONSTANTS):
         texts.append(f"{name}={value!r}")
+        return
     if getattr(value, "is_unit", False) is True:
         # it is not linked in; its callers depend only on the type of its result
         texts.append(f"{name} -> {getattr(value, 'returned', None)}")

@@ -36,13 +36,13 @@ from numba.core.errors import TypingError
 from numba.core.typing.templates import make_intrinsic_template
 
 from carom._compiled import ahead
-from carom._compiled.decorators import COMPILES, INSIDE, RULES, files_of, inlined, jit
+from carom._compiled.decorators import COMPILES, INSIDE, RULES, inlined
 from carom._compiled.record_arrays import ARRAY_FLAGS
 
 if COMPILES:
     from carom._compiled.by_reference import refer_to
-    from carom._compiled.cache import StampedCache, digest_of
-    from carom._compiled.target import Dispatcher, plain_type
+    from carom._compiled.cache import StampedCache, digest_of, files_of
+    from carom._compiled.target import Dispatcher, Entry, compiled, plain_type, with_files
 
 _RETURNS = {"float": types.float64, "int": types.int64, "bool": types.boolean}
 _FINDER = "carom_find_unit"  # symbol of `_find` in compiled code
@@ -110,10 +110,7 @@ class Unit:
     @functools.cached_property
     def compiled(self) -> Any:
         """The function as Numba compiles it."""
-        made = jit(**RULES, **INSIDE)(self._function)
-        if self.files is not None:
-            made._cache = self.files
-        return made
+        return with_files(compiled(self._function, **RULES, **INSIDE), self.files)
 
     @functools.cached_property
     def _numba_type_(self) -> types.Function:
@@ -314,10 +311,14 @@ class Entries:
         """
         key = (function, self._kind, *map(type, arguments))
         if key not in _ENTRIES:
-            jitted = hasattr(function, "typeof_pyval")  # false if nothing is compiled
-            types = tuple(map(function.typeof_pyval, arguments)) if jitted else ()
-            _ENTRIES[key] = function.compile(types) if jitted else function
+            _ENTRIES[key] = _for_types_of(function, arguments) if COMPILES else function
         try:
             return _ENTRIES[key](*arguments)
         except NotCompiled as error:
             raise (error.__cause__ or error) from None
+
+
+def _for_types_of(function: Entry, arguments: tuple) -> Callable:
+    """Return the compiled code of an entry for arguments like these."""
+    made = function.dispatcher
+    return made.compile(tuple(map(made.typeof_pyval, arguments)))

@@ -98,7 +98,7 @@ def _cache() -> tuple[dict[str, Any], list[str]]:
         return {"folder": None, "megabytes": 0.0}, [why]
     from carom.stepping import time_loop
 
-    folder = getattr(getattr(time_loop.run, "_cache", None), "cache_path", None)
+    folder = time_loop.run.dispatcher._cache.cache_path
     if not folder:
         why = "no folder for compiled code: set NUMBA_CACHE_DIR to a writable folder"
         return {"folder": None, "megabytes": 0.0}, [why]

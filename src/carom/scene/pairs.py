@@ -143,7 +143,7 @@ class Pairs:
         found = self.defaults(bodies, fixed)
         if found is None:
             return
-        for b in np.union1d(found.grounded.body, np.flatnonzero(meeting(found))):
+        for b in sorted({*found.grounded.body.tolist(), *np.flatnonzero(meeting(found)).tolist()}):
             _ = bodies[b].shape.pieces  # refused by a shape that has nothing to touch with
         if any(_has_profile(part) for part in (*bodies, *fixed)):
             _check_profiles(every_pair(found), bodies, fixed)
