@@ -143,8 +143,8 @@ def main() -> None:
         "many", "Many bodies that touch, beside MuJoCo",
         ["what", "carom by", "carom [s]", "MuJoCo, 1 ms [s]", "times MuJoCo's", "steps of carom"],
         [[cell if isinstance(cell, str) else cell.text() for cell in row] for row in rows],
-        f"Runs in turn; ratios of each turn. A run of more than {LONG:g} s was made once. A first result counts "
-        "from the start of the process, with imports; MuJoCo's has 1000 steps.",
+        f"Runs in turn; ratios of each turn. A run of more than {LONG:g} s was made once. A first result is "
+        "timed from the start of the process, with imports; MuJoCo's has 1000 steps.",
     )  # fmt: skip
 
 

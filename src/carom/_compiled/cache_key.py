@@ -115,4 +115,4 @@ def _text(code: types.CodeType) -> str:
         for k, part in enumerate(code.co_consts)
         if not (k == 0 and isinstance(part, str))
     ]
-    return f"{code.co_code!r}{consts}{code.co_names}{code.co_varnames}"
+    return "; ".join((code.co_code.hex(), *consts, *code.co_names, "of", *code.co_varnames))
