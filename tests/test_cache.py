@@ -164,10 +164,11 @@ print("damaged")
 """
 
 
-def told(code, tmp_path):
-    """What a process prints that finds `tiny.py`."""
+def told(code, tmp_path, place="cache"):
+    """What a process prints that finds `tiny.py`; without a place its code is kept beside it."""
     path = os.pathsep.join([str(tmp_path), *sys.path])
-    own = {"PYTHONPATH": path, "NUMBA_CACHE_DIR": str(tmp_path / "cache"), "NUMBA_NUM_THREADS": "1"}
+    own = {"PYTHONPATH": path, "NUMBA_NUM_THREADS": "1"}
+    own["NUMBA_CACHE_DIR"] = str(tmp_path / place) if place else ""
     child = subprocess.run(
         [sys.executable, "-c", code, str(tmp_path)], capture_output=True, text=True, check=True,
         env={**os.environ, **own},
@@ -190,6 +191,17 @@ def test_a_unit_is_loaded_without_the_compiler_as_long_as_its_file_is_valid(tmp_
     (tmp_path / "tiny.py").write_text(UNIT.format(factor=0.25))
     assert told(CALL, tmp_path) == ["2.0", "True", "True"]
     assert told(CALL, tmp_path) == ["2.0", "False", "False"]
+
+
+def test_code_of_a_wheel_is_loaded_from_beside_its_source(tmp_path):
+    """Where the cache is another folder, because that one cannot be written."""
+    (tmp_path / "tiny.py").write_text(UNIT.format(factor=0.5))
+    assert told(CALL, tmp_path, place="") == ["3.0", "True", "True"]
+    assert list((tmp_path / "__pycache__").glob("*.nbc"))
+    assert told(CALL, tmp_path, place="other") == ["3.0", "True", "True"]
+    shipped = "from carom._compiled import cache\ncache.SHIPPED = cache.SHIPPED.parent\n"
+    assert told(shipped + CALL, tmp_path, place="third") == ["3.0", "False", "False"]
+    assert not list((tmp_path / "third").rglob("*.nbc"))
 
 
 def test_scipy_is_loaded_where_linear_algebra_is_compiled():
