@@ -43,9 +43,7 @@ class Machine(NamedTuple):
     """The first part of a file: machine code, and what tells whether it can be used."""
 
     stamp: str  # of the function and the versions for which it is valid
-    library: tuple[
-        str, str, tuple
-    ]  # the state of a `carom._compiled.target.Library`, without LLVM code
+    library: tuple[str, str, tuple]  # state of a library of the target, without LLVM code
     name: str  # of the function
     needs: list[str]  # symbols; LLVM ends the process where one is missing
     alone: bool  # whether nothing of the second part is needed to call it
