@@ -25,7 +25,7 @@ HERE = Path(__file__).parent
 ROOT = HERE.parent
 SCRIPTS = (
     "free_step", "impact", "corner", "coulomb", "location", "convergence", "accuracy", "work_precision",
-    "chain", "loops", "methods", "heaps", "many_bodies", "pairs", "ensembles", "scaling", "allocation",
+    "chain", "loops", "methods", "heaps", "many", "many_bodies", "pairs", "ensembles", "scaling", "allocation",
     "startup", "short_calls", "user_functions", "cube_tosses", "real_impacts", "installed",
 )  # fmt: skip
 PICTURES = ("work_precision", "accuracy", "scaling", "convergence", "location")

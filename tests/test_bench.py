@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import carom
-from carom.bench import measure, standard
+from carom.bench import many, measure, standard
 from carom.bench.problems import (
     ALL,
     chain,
@@ -149,12 +149,39 @@ def test_names_of_the_set_are_its_own():
     assert len(set(names)) == len(names) == 10
 
 
-def test_what_asv_runs():
-    """The classes of benchmarks/asv work; asv itself is not needed."""
+@pytest.mark.parametrize("make", many.ALL)
+def test_scenes_of_many_bodies_are_the_same_in_both(make):
+    """Masses, and the first 20 ms, in which most bodies fall."""
+    mujoco = pytest.importorskip("mujoco")
+    made = make()
+    scene, (model, _) = made.scene(), made.mujoco(mujoco)
+    assert [body.mass for body in scene.bodies] == pytest.approx(model.body_mass[1:], rel=1e-12)
+    theirs = made.run_mujoco(mujoco, 0.02)
+    ours = carom.simulate(scene, 0.02, step=1e-3, throw=False)
+    assert ours.success
+    assert np.abs(ours.position[-1] - theirs).max() < 3e-3
+    assert 0.5 * len(theirs) < np.sum(np.abs(ours.position[-1] - theirs).max(axis=1) < 3e-4)
+
+
+def asv_module(name):
+    """A module of benchmarks/asv; asv itself is not needed."""
     folder = Path(__file__).parents[1] / "benchmarks" / "asv"
-    spec = importlib.util.spec_from_file_location("asv_problems", folder / "problems.py")
+    spec = importlib.util.spec_from_file_location(f"asv_{name}", folder / f"{name}.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
+    return module
+
+
+def test_asv_measures_scenes_of_many_bodies(monkeypatch):
+    module = asv_module("many")
+    assert module.Many.params[0] == [make.__name__ for make in many.ALL]
+    monkeypatch.setitem(module.SCENES, "plate", lambda: many.plate()._replace(duration=0.01))
+    assert 0.0 < module.Many().track_run("plate") < 60.0
+
+
+def test_what_asv_runs():
+    """The classes of benchmarks/asv work."""
+    module = asv_module("problems")
     problem = module.Problem()
     assert set(module.Problem.params[0]) == {p.NAME for p in ALL}
     problem.setup("sphere")

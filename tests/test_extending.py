@@ -100,7 +100,7 @@ def add(text: str, root: Path) -> int:
 
 
 def test_what_the_page_adds_runs(tmp_path):
-    ours = shutil.ignore_patterns("*.nb[ic]", "*.asked", "functions")  # all but bytecode
+    ours = shutil.ignore_patterns("*.nbc", "*.asked", "functions")  # all but bytecode
     shutil.copytree(LIBRARY, tmp_path / "src" / "carom", ignore=ours)
     assert add(PAGE.read_text(), tmp_path) == 21
     ours = {"PYTHONPATH": str(tmp_path / "src"), "NUMBA_DISABLE_JIT": "1"}

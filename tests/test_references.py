@@ -79,5 +79,5 @@ def test_types():
 def test_names_are_short():
     h, out = hulls(2), np.zeros(1)
     of_parts(h, out, np.zeros(2))
-    (compiled,) = of_parts.overloads.values()
+    (compiled,) = of_parts.dispatcher.overloads.values()
     assert len(compiled.fndesc.mangled_name) < 300

@@ -25,7 +25,7 @@ def made(factor="2.0", shift=1.0, doc="''", deep="x", option="x + 1.0", unit="x"
     space["leaf"].__module__ = "made"
     exec(f"def option(x):\n    return {option}\ndef reached(x):\n    return {unit}", space)
     space["chosen"] = types.SimpleNamespace(parts=(space["option"],))
-    space["reached"] = types.SimpleNamespace(compiled=space["reached"])
+    space["reached"] = types.SimpleNamespace(is_unit=True, compiled=space["reached"])
     for name in ("leaf", "deep"):
         where = vars(module) if name == "deep" else space
         where[name] = types.SimpleNamespace(py_func=where[name])
@@ -45,6 +45,15 @@ def test_change_of_a_part_changes_the_stamp(change):
     assert stamp(made(**change)) != stamp(made())
 
 
+def test_what_is_known_of_functions_gives_the_same_stamp():
+    """Also of a function that was reached before from another one."""
+    caller, known = made(), {}
+    leaf = caller.__globals__["leaf"].py_func
+    assert stamp(caller, known) == stamp(caller, known) == stamp(caller)
+    assert len(known) == 4
+    assert stamp(leaf, known) == stamp(leaf) != stamp(caller)
+
+
 def test_a_unit_is_left_out():
     assert stamp(made(unit="2.0 * x")) == stamp(made())
 
@@ -56,7 +65,8 @@ def test_the_whole_loop_is_reached():
 
     if not hasattr(contact_step, "compiled"):
         pytest.skip("not compiled: there is no cache")
-    names = list(cache_key._reached(contact_step.compiled.py_func, set()))
+    reached = cache_key.reached(contact_step.compiled.py_func, {})
+    names = [f"{one.__module__}.{one.__qualname__}" for one in reached]
     for name in (
         "persistent.members.implicit_member",
         "dynamics.delassus.velocities",

@@ -84,16 +84,16 @@ def test_a_unit_is_called_only_where_its_condition_holds():
     made = {name: UNITS[f"test_units:{name}"] for name in ("add", "last")} if UNITS else {}
     assert add.__doc__ == "Add a number to the last element."
     assert of_long(np.zeros(2), 4.0) == (-1, 0.5)
-    assert not any(len(one.compiled.overloads) for one in made.values())
+    assert not any(one.loaded for one in made.values())
     assert of_long(np.zeros(3), 4.0) == (2, 4.0)
-    assert all(len(one.compiled.overloads) == 1 for one in made.values())
+    assert all(len(one.loaded) == 1 for one in made.values())
 
 
 @compiled
 def test_each_is_compiled_once():
     of_units(1.0, np.zeros(1))
     for made in (twice, norm):
-        assert len(made.compiled.overloads) == 1
+        assert len(made.loaded) == 1
     assert UNITS["test_units:twice"] is twice
 
 
@@ -122,7 +122,7 @@ def test_others_and_we_may_share_what_numba_writes_as_overloads():
 def test_what_is_not_called_is_not_compiled():
     call, out = Entries(()), np.zeros(1)
     assert call(sometimes, -1.0, out) == -1.0
-    assert not broken.compiled.overloads
+    assert not broken.loaded
 
 
 @compiled
@@ -139,7 +139,7 @@ def test_an_interrupt_while_a_unit_is_compiled_is_raised(monkeypatch):
         raise KeyboardInterrupt
 
     call, out = Entries(()), np.zeros(1)
-    monkeypatch.setattr(broken.compiled, "get_compile_result", interrupted)
+    monkeypatch.setattr(broken, "address", interrupted)
     with pytest.raises(KeyboardInterrupt):
         call(sometimes, 2.0, out)
 
@@ -166,9 +166,9 @@ def test_each_unit_has_one_type_for_all_scenes_and_methods():
     for seen in (run.state, run.solution, carom.simulate(scene, 0.05)):
         assert np.shape(seen.joint_reactions)[-1] == 6
     seen.evaluate(0.02)
-    assert len(time_loop.run.overloads) == 1
+    assert len(time_loop.run.dispatcher.overloads) == 1
     ours = {name: made for name, made in UNITS.items() if name.startswith("carom.")}
-    assert [name for name, made in ours.items() if len(made.compiled.overloads) > 1] == []
+    assert [name for name, made in ours.items() if len(made.loaded) > 1] == []
 
 
 STOPPED = """
@@ -180,11 +180,10 @@ ground = scene.add_half_space(point=(0, 0, 0), normal=(0, 0, 1))
 ball = scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 0.15))
 scene.add_contact(ball, ground, restitution=0.3, friction=0.2)
 
-asked = activate_contact.compiled.get_compile_result
-def stopped(signature):
-    activate_contact.compiled.get_compile_result = asked
+def stopped(digest, packed):
+    del activate_contact.address
     raise KeyboardInterrupt
-activate_contact.compiled.get_compile_result = stopped
+activate_contact.address = stopped
 
 part = carom.simulate(scene, 0.3, step=1e-2, throw=False)
 whole = carom.simulate(scene, 0.3, step=1e-2)

@@ -83,8 +83,13 @@ class Memory:
 
 
 class Startup:
+    timeout = 900  # the first process compiles
+
     def timeraw_import(self):
         return "import carom"
 
     def timeraw_command(self):
         return "from carom.cli.app import command; command()"
+
+    def timeraw_first_run(self):
+        return "import carom; from carom.bench.problems.chain import scene; carom.simulate(scene(), 2.0)"

@@ -323,7 +323,8 @@ def _no_number(value) -> bool:
         value = np.asanyarray(value)
         if value.dtype.kind == "O":
             return any(map(_no_number, value.flat))
-        return value.dtype.kind not in "iufc" or bool(np.ma.is_masked(value))
+        # of a masked array; NumPy loads those when they are named
+        return value.dtype.kind not in "iufc" or bool(np.any(getattr(value, "mask", False)))
     return value is None or isinstance(value, _NO_NUMBERS)
 
 

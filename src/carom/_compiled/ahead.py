@@ -99,7 +99,8 @@ def compile_one() -> bool:
         from carom._compiled import units
 
         with contextlib.suppress(Exception):  # an error is raised again when the unit is called
-            if not units.find(name).compiled._cache.is_taken():
+            files = units.find(name).files
+            if files is None or not files.is_taken():
                 units.address(name, units.unpack(packed))
     return True
 

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import inspect
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -28,7 +27,8 @@ def by_number(
     mark : callable
         Decorator of the result: `inlined` for small ones that each step calls often.
     """
-    parameters = list(inspect.signature(default).parameters)
+    code = default.__code__
+    parameters = code.co_varnames[: code.co_argcount]
     names, given = ", ".join(parameters), ", ".join(one for one in parameters if one != number)
     known: dict[str, Any] = {"otherwise": kernel(default)}
     lines = [f"def {default.__name__}({names}):"]

@@ -12,8 +12,10 @@ import hashlib
 from functools import cache
 from typing import Any
 
+import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
+from numba.core.errors import NumbaNotImplementedError
 from numba.core.typing.templates import AttributeTemplate, infer_getattr
 from numba.core.typing.typeof import Purpose, typeof
 from numba.extending import (
@@ -24,6 +26,9 @@ from numba.extending import (
     register_model,
     unbox,
 )
+from numba.np.numpy_support import from_dtype, map_layout
+
+from carom._compiled.record_arrays import ARRAY_FLAGS, Columns
 
 
 class Reference(types.Type):
@@ -50,6 +55,10 @@ class Reference(types.Type):
         return self.record.types
 
 
+_ARRAYS = np.ndarray, Columns
+_KINDS: dict[tuple, types.Array] = {}  # types of arrays; those of a scene are 100, on 800 arrays
+
+
 @cache
 def _reference(record: Any) -> Reference:
     return Reference(record)
@@ -66,10 +75,20 @@ def _type_of(value):
         kinds = [type_of(v) for v in value]
         return types.BaseTuple.from_types(kinds, type(value))
     try:
-        kind = typeof(value, Purpose.argument)
-    except ValueError:
+        kind = _type_of_array(value) if type(value) in _ARRAYS else typeof(value, Purpose.argument)
+    except (ValueError, NumbaNotImplementedError):
         kind = None
     return types.pyobject if kind is None else kind
+
+
+def _type_of_array(array) -> types.Array:
+    """Return the type that Numba has for an array; it would import masked arrays to see that it is none."""
+    dtype = array.dtype
+    key = dtype, dtype.isalignedstruct, array.ndim, array.flags.num & ARRAY_FLAGS
+    if key not in _KINDS:
+        layout, readonly = map_layout(array), not array.flags.writeable
+        _KINDS[key] = types.Array(from_dtype(dtype), array.ndim, layout, readonly=readonly)
+    return _KINDS[key]
 
 
 def is_ours(kind: Any) -> bool:

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import hashlib
 import types
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 from functools import cache
 from pathlib import Path
 
@@ -26,12 +26,33 @@ _RULES = (
 _CONSTANTS = (int, float, str, bool, tuple, frozenset)
 
 
-def stamp(function: Callable) -> str:
-    """Return the hash of all that the compiled `function` depends on, except the types of arguments."""
+Own = tuple[str, list[Callable]]  #: text of a function alone, and the functions that it names
+
+
+def stamp(function: Callable, known: dict[Callable, Own] | None = None) -> str:
+    """Return the hash of all that the compiled `function` depends on, except the types of arguments.
+
+    What is `known` of functions is not read again: the units of a run share most of theirs.
+    """
+    known = {} if known is None else known
     digest = hashlib.sha256(_rules())
-    for part in _reached(function, set()):
-        digest.update(part.encode())
+    for one in reached(function, known):
+        digest.update(known[one][0].encode())
     return digest.hexdigest()
+
+
+def reached(function: Callable, known: dict[Callable, Own]) -> list[Callable]:
+    """Return a function and all functions that it can reach, each once, in the order of their names."""
+    found: dict[Callable, None] = {}
+    left = [function]
+    while left:
+        one = left.pop()
+        if one not in found:
+            found[one] = None
+            if one not in known:
+                known[one] = _own(one)
+            left.extend(reversed(known[one][1]))
+    return list(found)
 
 
 @cache
@@ -40,41 +61,42 @@ def _rules() -> bytes:
     return b"".join((here / name).read_bytes() for name in _RULES)
 
 
-def _reached(function: Callable, seen: set[int]) -> Iterator[str]:
-    """Yield the text of a function and of all functions that it can reach, each once."""
-    if id(function) in seen:
-        return
-    seen.add(id(function))
-    yield f"{function.__module__}.{function.__qualname__}"
-    yield _text(function.__code__)
-    outer = dict(zip(function.__code__.co_freevars, function.__closure__ or ()))
+def _own(function: Callable) -> Own:
+    """Return the text of a function with the constants that it names, and the functions that it names."""
+    code: types.CodeType = function.__code__
+    texts = [f"{function.__module__}.{function.__qualname__}", _text(code)]
+    called: list[Callable] = []
+    outer = dict(zip(code.co_freevars, function.__closure__ or ()))
     near = {name: cell.cell_contents for name, cell in outer.items()}
-    names = _names(function.__code__)
+    names = _names(code)
     for name in names:
         value = near.get(name, function.__globals__.get(name))
+        if value is None:  # most names are of fields
+            continue
         if isinstance(value, types.ModuleType) and value.__name__.startswith("carom"):
-            for inner in names:
-                if inner in vars(value):
-                    yield from _value(inner, vars(value)[inner], seen)
+            inside = vars(value)
+            pairs = [(inner, inside[inner]) for inner in names if inner in inside]
         else:
-            yield from _value(name, value, seen)
+            pairs = [(name, value)]
+        for one in pairs:
+            _add_value(*one, texts, called)
+    return "\n".join(texts), called
 
 
-def _value(name: str, value: object, seen: set[int]) -> Iterator[str]:
-    """Yield the text of a global: a constant, a kernel or a unit."""
+def _add_value(name: str, value: object, texts: list[str], called: list[Callable]) -> None:
+    """Add the text of a global: of a constant, a kernel or a unit; and the functions that it brings."""
     if isinstance(value, _CONSTANTS):
-        yield f"{name}={value!r}"
-    if hasattr(
-        value, "compiled"
-    ):  # a unit is not linked in; its callers depend only on the type of its result
-        yield f"{name} -> {getattr(value, 'returned', None)}"
+        texts.append(f"{name}={value!r}")
+        return
+    if getattr(value, "is_unit", False) is True:
+        # it is not linked in; its callers depend only on the type of its result
+        texts.append(f"{name} -> {getattr(value, 'returned', None)}")
     if getattr(value, "targetoptions", {}).get("forceinline"):
-        yield f"{name} is inlined"
-    for part in getattr(value, "parts", ()):
-        yield from _reached(getattr(part, "py_func", part), seen)
+        texts.append(f"{name} is inlined")
+    called += [getattr(part, "py_func", part) for part in getattr(value, "parts", ())]
     inner = getattr(value, "py_func", None)
     if inner is not None:
-        yield from _reached(inner, seen)
+        called.append(inner)
 
 
 def _names(code: types.CodeType) -> list[str]:
@@ -93,4 +115,4 @@ def _text(code: types.CodeType) -> str:
         for k, part in enumerate(code.co_consts)
         if not (k == 0 and isinstance(part, str))
     ]
-    return f"{code.co_code!r}{consts}{code.co_names}{code.co_varnames}"
+    return "; ".join((code.co_code.hex(), *consts, *code.co_names, "of", *code.co_varnames))

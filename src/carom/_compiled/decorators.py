@@ -10,7 +10,6 @@ changes (`carom._compiled.cache`).
 
 from __future__ import annotations
 
-import contextlib
 import warnings
 from typing import Any
 
@@ -22,10 +21,8 @@ COMPILES = not getattr(config, "DISABLE_JIT", 0)
 if COMPILES:
     try:  # inner parts of Numba that exist in the tested versions (pyproject.toml)
         from carom._compiled.by_reference import refer
-        from carom._compiled.cache import StampedCache
         from carom._compiled.link_only import PartCompiler
-        from carom._compiled.target import Kernel
-        from carom._compiled.target import compiled as _compiled
+        from carom._compiled.target import Entry, Kernel
     except (ImportError, AttributeError) as error:
         COMPILES = False
         warnings.warn(
@@ -65,26 +62,12 @@ def _part(function, options):
     return Kernel(function, options) if COMPILES else function
 
 
-def jit(**options):
-    """Return the decorator of the target, or one that returns functions unchanged."""
-    return _compiled(**options) if COMPILES else lambda function: function
-
-
 def entry(function):
     """Compile `function` for calls from Python as well, and store it on disk with all that it calls.
 
     If no directory is writable (a read-only install without a user cache), it is compiled in each process.
     """
-    compiled = jit(**RULES, **_OUTSIDE)(function)
-    return keep_on_disk(compiled, function)
-
-
-def keep_on_disk(compiled, function):
-    """Store compiled code in files beside the source, or in the cache of the user."""
-    if COMPILES:
-        with contextlib.suppress(RuntimeError):  # no writable place for a cache
-            compiled._cache = StampedCache(function)
-    return compiled
+    return Entry(function, {**RULES, **_OUTSIDE}) if COMPILES else function
 
 
 def _same(record):

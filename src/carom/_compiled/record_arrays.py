@@ -7,6 +7,9 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+#: of an array, on which its type depends: C order, Fortran order, aligned, writeable
+ARRAY_FLAGS = 0x1 | 0x2 | 0x100 | 0x400
+
 
 class Columns(np.recarray):
     """A record array that looks for a column only if an array has no attribute of that name.

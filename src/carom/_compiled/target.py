@@ -31,7 +31,7 @@ from numba.core.target_extension import (
 )
 
 from carom._compiled.by_reference import type_of
-from carom._compiled.cache import StampedCache
+from carom._compiled.cache import StampedCache, files_of
 
 NAME = "carom"
 NATIVE = "CAROM_NATIVE"  # environment variable: "1" compiles for the present processor
@@ -85,6 +85,14 @@ class Library(codegen.JITCodeLibrary):
         parts = (*module.functions, *module.global_variables)
         names = [part.name for part in parts if not part.is_declaration]
         return self.name, "object", (code, names, module.as_bitcode())
+
+    def symbols_needed(self) -> list[str]:
+        """Return the symbols that the code needs and that this process finds."""
+        module: Any = self._final_module
+        parts = [
+            one.name for one in (*module.functions, *module.global_variables) if one.is_declaration
+        ]
+        return [name for name in parts if name[:5] != "llvm." and llvm.address_of_symbol(name)]
 
     @classmethod
     def _unserialize(cls, codegen, state):
@@ -321,6 +329,30 @@ class Kernel:
     @property
     def _numba_type_(self):
         return self.dispatcher._numba_type_
+
+
+class Entry(Kernel):
+    """A function that Python calls too: it has a dispatcher, and files, once it is called."""
+
+    def __init__(self, function, options):
+        super().__init__(function, options)
+        self.__wrapped__ = function  # its signature
+
+    @functools.cached_property
+    def dispatcher(self) -> Any:
+        """The function as Numba knows it, with its files."""
+        return with_files(compiled(self.py_func, **self.targetoptions), files_of(self.py_func))
+
+    def __call__(self, *arguments):
+        """Call it from Python."""
+        return self.dispatcher(*arguments)
+
+
+def with_files(made: Any, files: StampedCache | None) -> Any:
+    """Return a function that finds its compiled code in files, if it has a place for them."""
+    if files is not None:
+        made._cache = files
+    return made
 
 
 target_registry[NAME] = CaromCPU

@@ -20,7 +20,6 @@ from __future__ import annotations
 import contextlib
 import ctypes
 import functools
-import hashlib
 import importlib
 import inspect
 import pickle
@@ -32,15 +31,18 @@ import llvmlite.binding as llvm
 import numpy as np
 from llvmlite import ir
 from numba.core import cgutils, types
+from numba.core.compiler_lock import global_compiler_lock
 from numba.core.errors import TypingError
-from numba.extending import intrinsic
+from numba.core.typing.templates import make_intrinsic_template
 
 from carom._compiled import ahead
-from carom._compiled.decorators import COMPILES, INSIDE, RULES, inlined, jit, keep_on_disk
+from carom._compiled.decorators import COMPILES, INSIDE, RULES, inlined
+from carom._compiled.record_arrays import ARRAY_FLAGS
 
 if COMPILES:
     from carom._compiled.by_reference import refer_to
-    from carom._compiled.target import plain_type
+    from carom._compiled.cache import StampedCache, digest_of, files_of
+    from carom._compiled.target import Dispatcher, Entry, compiled, plain_type, with_files
 
 _RETURNS = {"float": types.float64, "int": types.int64, "bool": types.boolean}
 _FINDER = "carom_find_unit"  # symbol of `_find` in compiled code
@@ -83,53 +85,102 @@ def _guarded(function, made, where, otherwise):
     return inlined(guard)
 
 
-def _separate(function):
+class Unit:
+    """A function that is compiled separately, as Numba and the code that calls it see it.
+
+    What Numba needs of it is made while a caller is compiled, or when it is compiled itself: a process that
+    finds all code on disk makes none of it.
+    """
+
+    is_unit = True  # for stamps
+
+    def __init__(self, function: Callable):
+        self._function = function
+        self.returned = _returned(function.__annotations__.get("return"))
+        self.__name__, self.__qualname__ = function.__name__, function.__qualname__
+        self.__module__, self.__doc__ = function.__module__, function.__doc__
+        #: its code in this process: address and library, by the hash of its types
+        self.loaded: dict[str, tuple[int, Any]] = {}
+
+    @functools.cached_property
+    def files(self) -> StampedCache | None:
+        """The files of its compiled code."""
+        return files_of(self._function, linked=False)
+
+    @functools.cached_property
+    def compiled(self) -> Any:
+        """The function as Numba compiles it."""
+        return with_files(compiled(self._function, **RULES, **INSIDE), self.files)
+
+    @functools.cached_property
+    def _numba_type_(self) -> types.Function:
+        """The type of what calls it: an intrinsic of Numba."""
+
+        def call(typing, *arguments):
+            kinds = tuple(map(plain_type, arguments))
+
+            def generate(context, builder, signature, values):
+                pairs = [refer_to(builder, kind, value) for kind, value in zip(kinds, values)]
+                taken, values = zip(*pairs)
+                return _call(context, builder, name, self, taken, values)
+
+            return self.returned(*kinds), generate
+
+        name = f"{self.__module__}:{self.__qualname__}"
+        given = inspect.signature(self._function).parameters.values()
+        own = [one.replace(annotation=inspect.Parameter.empty) for one in given]
+        first = inspect.Parameter("typing", inspect.Parameter.POSITIONAL_OR_KEYWORD)
+        call.__signature__ = inspect.Signature([first, *own])  # pyright: ignore[reportFunctionMemberAccess]
+        call.__name__, call.__qualname__ = self.__name__, self.__qualname__
+        call.__module__, call.__doc__ = self.__module__, self.__doc__
+        return types.Function(make_intrinsic_template(self, call, self.__name__))
+
+    def address(self, digest: str, packed: bytes) -> int:
+        """Return the address of its code for packed types with this hash; load or compile it if need be."""
+        if digest not in self.loaded:
+            with global_compiler_lock:
+                if digest not in self.loaded:  # by another thread
+                    self.loaded[digest] = self._from_disk(digest) or self._made(unpack(packed))
+        return self.loaded[digest][0]
+
+    def _from_disk(self, digest: str) -> tuple[int, Any] | None:
+        codegen = Dispatcher.targetdescr.target_context.codegen()
+        found = None if self.files is None else self.files.machine(digest, codegen)
+        if found is None:
+            return None
+        library = codegen.unserialize_library(found.library)
+        return library.get_pointer_to_function(found.name), library
+
+    def _made(self, kinds: tuple) -> tuple[int, Any]:
+        made = self.compiled.get_compile_result(self.returned(*kinds))
+        return made.library.get_pointer_to_function(made.fndesc.llvm_func_name), made.library
+
+
+def _separate(function) -> Unit:
     """Return what calls a function that is compiled separately."""
-    compiled = keep_on_disk(jit(**RULES, **INSIDE)(function), function)
-    given = inspect.signature(function)
-    result = _returned(given.return_annotation)
-
-    def call(typing, *arguments):
-        kinds = tuple(map(plain_type, arguments))
-
-        def generate(context, builder, signature, values):
-            pairs = [refer_to(builder, kind, value) for kind, value in zip(kinds, values)]
-            taken, values = zip(*pairs)
-            return _call(context, builder, name, result, taken, values)
-
-        return result(*kinds), generate
-
-    name = f"{function.__module__}:{function.__qualname__}"
-    own = [p.replace(annotation=inspect.Parameter.empty) for p in given.parameters.values()]
-    first = inspect.Parameter("typing", inspect.Parameter.POSITIONAL_OR_KEYWORD)
-    call.__signature__ = inspect.Signature([first, *own])  # pyright: ignore[reportFunctionMemberAccess]
-    call.__name__, call.__qualname__ = function.__name__, function.__qualname__
-    call.__module__, call.__doc__ = function.__module__, function.__doc__
-    made: Any = intrinsic(call)
-    made.compiled, made.returned = compiled, result
-    UNITS[name] = made
+    made = Unit(function)
+    UNITS[f"{function.__module__}:{function.__qualname__}"] = made
     return made
 
 
 def _returned(annotation) -> types.Type:
     """Return the type of the result of a unit, from the text of its annotation."""
-    if annotation is inspect.Signature.empty:
+    if annotation is None:
         return types.none
     if annotation.startswith("tuple["):
         return types.Tuple([_RETURNS[part.strip()] for part in annotation[6:-1].split(",")])
     return _RETURNS[annotation]
 
 
-def _call(context, builder, name, result, kinds, values):
+def _call(context, builder, name, unit, kinds, values):
     """Generate the call of a unit: read the slot, fill it if it is empty, and call."""
     pointer, number = ir.IntType(8).as_pointer(), ir.IntType(64)
     ASKED[name, kinds] = None
-    packed = pack(kinds)
-    cache: Any = getattr(UNITS[name].compiled, "_cache", None)
-    if hasattr(cache, "note_asked"):
-        cache.note_asked(packed)
+    packed, result = pack(kinds), unit.returned
+    if unit.files is not None:
+        unit.files.note_asked(packed)
     ahead.tell(name, packed)
-    digest = hashlib.sha256(packed).hexdigest()[:16]
+    digest = digest_of(result(*kinds))
     slot = _global(builder.module, f"slot.{name}.{digest}", ir.Constant(pointer, None), False)
     found = builder.load(slot)
     place = cgutils.alloca_once_value(builder, found)
@@ -138,7 +189,7 @@ def _call(context, builder, name, result, kinds, values):
         finder = cgutils.get_or_insert_function(builder.module, form, _FINDER)
         texts = [
             _global(builder.module, f"{kind}.{name}.{digest}", cgutils.make_bytearray(text), True)
-            for kind, text in (("name", name.encode() + b"\0"), ("types", packed))
+            for kind, text in (("name", f"{name} {digest}\0".encode()), ("types", packed))
         ]
         texts = [builder.bitcast(text, pointer) for text in texts]
         asked = builder.call(finder, [*texts, ir.Constant(number, len(packed))])
@@ -163,7 +214,7 @@ def _global(module, name, value, constant):
 
 
 #: all units, by module and name
-UNITS: dict[str, Any] = {}
+UNITS: dict[str, Unit] = {}
 #: units that code compiled in this process may call: name and types of arguments
 ASKED: dict[tuple[str, tuple], None] = {}
 
@@ -182,7 +233,7 @@ def asked_before() -> set[tuple[str, tuple]]:
     """Return units of loaded modules, with the types with which compiled code on disk calls them."""
     out = set()
     for name, made in UNITS.items():
-        packed = getattr(made.compiled._cache, "asked", lambda: None)()
+        packed = None if made.files is None else made.files.asked()
         if packed is not None:
             with contextlib.suppress(Exception):  # a file of another version of Numba
                 out.add((name, unpack(packed)))
@@ -206,15 +257,15 @@ def find(name: str) -> Any:
 def address(name: str, kinds: tuple) -> int:
     """Return the address of a unit for arguments of these types, loaded or compiled."""
     made = find(name)
-    compiled = made.compiled.get_compile_result(made.returned(*kinds))
-    return compiled.library.get_pointer_to_function(compiled.fndesc.llvm_func_name)
+    return made.address(digest_of(made.returned(*kinds)), pack(kinds))
 
 
 @ctypes.CFUNCTYPE(ctypes.c_void_p, ctypes.c_char_p, ctypes.c_void_p, ctypes.c_int64)
-def _find(name, packed, size):
+def _find(called, packed, size):
     """Return the address of a unit to compiled code, or 0 if it could not be compiled."""
     try:
-        return address(name.decode(), unpack(ctypes.string_at(packed, size)))
+        name, digest = called.decode().split(" ")
+        return find(name).address(digest, ctypes.string_at(packed, size))
     except BaseException as error:  # Ctrl-C too: errors cannot pass through compiled code
         NotCompiled.stopped_by = error
         return 0
@@ -222,7 +273,6 @@ def _find(name, packed, size):
 
 llvm.add_symbol(_FINDER, ctypes.cast(_find, ctypes.c_void_p).value)
 
-_FLAGS = 0x1 | 0x2 | 0x100 | 0x400  # of an array: C order, Fortran order, aligned, writeable
 _KINDS: dict[tuple, object] = {}  # one object for each key, which is faster to compare
 _ENTRIES: dict[tuple, Callable] = {}
 
@@ -232,7 +282,7 @@ def kind(value):
     if isinstance(value, tuple):
         return (type(value), *map(kind, value))
     if isinstance(value, np.ndarray):
-        return value.dtype, value.ndim, value.flags.num & _FLAGS
+        return value.dtype, value.ndim, value.flags.num & ARRAY_FLAGS
     return type(value)
 
 
@@ -261,10 +311,14 @@ class Entries:
         """
         key = (function, self._kind, *map(type, arguments))
         if key not in _ENTRIES:
-            jitted = hasattr(function, "typeof_pyval")  # false if nothing is compiled
-            types = tuple(map(function.typeof_pyval, arguments)) if jitted else ()
-            _ENTRIES[key] = function.compile(types) if jitted else function
+            _ENTRIES[key] = _for_types_of(function, arguments) if COMPILES else function
         try:
             return _ENTRIES[key](*arguments)
         except NotCompiled as error:
             raise (error.__cause__ or error) from None
+
+
+def _for_types_of(function: Entry, arguments: tuple) -> Callable:
+    """Return the compiled code of an entry for arguments like these."""
+    made = function.dispatcher
+    return made.compile(tuple(map(made.typeof_pyval, arguments)))

@@ -98,7 +98,7 @@ def _cache() -> tuple[dict[str, Any], list[str]]:
         return {"folder": None, "megabytes": 0.0}, [why]
     from carom.stepping import time_loop
 
-    folder = getattr(getattr(time_loop.run, "_cache", None), "cache_path", None)
+    folder = time_loop.run.dispatcher._cache.cache_path
     if not folder:
         why = "no folder for compiled code: set NUMBA_CACHE_DIR to a writable folder"
         return {"folder": None, "megabytes": 0.0}, [why]
@@ -106,7 +106,7 @@ def _cache() -> tuple[dict[str, Any], list[str]]:
     package = Path(time_loop.__file__).parents[1]
     if top.is_relative_to(package):  # beside the source
         top = package
-    size = sum(file.stat().st_size for file in top.rglob("*.nb[ic]"))
+    size = sum(file.stat().st_size for file in top.rglob("*.nbc"))
     found = {"folder": str(folder), "megabytes": size / 1e6}
     if not os.access(folder, os.W_OK):
         return found, [f"{folder} is not writable: set NUMBA_CACHE_DIR to a writable folder"]

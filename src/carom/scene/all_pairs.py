@@ -165,6 +165,13 @@ def meeting(of: Defaults) -> np.ndarray:
     return of.solid & (partners > 0)
 
 
+def that_touch(of: Defaults) -> list[int]:
+    """Return the bodies, by number, that may touch another one, a half-space or a static body."""
+    touches = meeting(of)
+    touches[of.grounded.body] = True
+    return np.flatnonzero(touches).tolist()
+
+
 def near_fixed(
     pairs: PairTable, bodies: Sequence[Body], fixed: Sequence[HalfSpace | StaticBody]
 ) -> np.ndarray:

@@ -5,18 +5,16 @@ from __future__ import annotations
 from functools import partial
 from typing import Any
 
-import numpy as np
-
 from carom import checks
 from carom.scene.all_pairs import (
     Defaults,
     PairTable,
     defaults,
     every_pair,
-    meeting,
     near_each_other,
     near_fixed,
     no_pairs,
+    that_touch,
 )
 from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.contacts import Contact, check_overlap
@@ -143,7 +141,7 @@ class Pairs:
         found = self.defaults(bodies, fixed)
         if found is None:
             return
-        for b in np.union1d(found.grounded.body, np.flatnonzero(meeting(found))):
+        for b in that_touch(found):
             _ = bodies[b].shape.pieces  # refused by a shape that has nothing to touch with
         if any(_has_profile(part) for part in (*bodies, *fixed)):
             _check_profiles(every_pair(found), bodies, fixed)

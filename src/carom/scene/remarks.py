@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from carom.geometry.frames import length
-from carom.scene.all_pairs import meeting
+from carom.scene.all_pairs import that_touch
 from carom.scene.bodies import HalfSpace
 from carom.scene.forces import Force, Torque
 
@@ -53,8 +53,7 @@ def _touched(scene: Scene) -> set:
     touched: set = {part for one in scene.contacts for part in (one.body, one.other)}
     found = scene._pairs.defaults(scene.bodies, scene.fixed)
     if found is not None:
-        some = np.union1d(found.grounded.body, np.flatnonzero(meeting(found)))
-        touched.update(map(scene.bodies.__getitem__, some))
+        touched.update(scene.bodies[b] for b in that_touch(found))
     return touched
 
 
