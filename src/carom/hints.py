@@ -314,7 +314,7 @@ MEMBERS = {
         "VelocityServo": "VelocityActuator Velocity",
         "JointInertia": "Armature Rotor ReflectedInertia",
         "Bushing": "Mount",
-        "an elastic rope is CurveSpring, whose tension is 0 up to its length, a stiff one carom.joints.Tether":
+        "an elastic rope is scene.add_rope(..., stiffness=...), one of fixed length carom.joints.Tether":
             "Rope Cable Tether",
         "Drag": "AirDrag AirResistance FluidDrag Aerodynamic",
         "Magnus": "Lift SpinLift",

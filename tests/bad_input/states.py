@@ -177,7 +177,7 @@ def stated():
         ),
         "Scene.switch": of_scene("switch", part="@hinge", at=0.5, off=True, name="new"),
         "Scene.add_rope": of_scene(
-            "add_rope", over=["ball", "box"], length=100.0, stiffness=None, restitution=0.5,
+            "add_rope", over=["ball", "box"], length=100.0, stiffness=None, damping=0.0, restitution=0.5,
             impact_law="newton", name="new",
         ),
         "Scene.add_contact": of_scene(

@@ -177,7 +177,7 @@ def test_changes():
             {"length": 1.0},
             "length must be at least 2.314",
         ),
-        (["a", "b"], {"stiffness": 10.0}, "stiffness must be None"),
+        ([(GROUND, (0, 0, 0)), (GROUND, (1, 0, 0))], {}, "over must have a body in it that moves"),
         (["a", "c"], {}, r"over\[1\] must be"),
     ],
 )

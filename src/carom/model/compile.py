@@ -347,8 +347,15 @@ def _extents(elements: Elements, joints) -> np.ndarray:
 
 
 def _tethered(scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return the bodies on tethers, -1 among them, and those that ropes join, more than two at once."""
+    """Return the bodies on tethers, -1 among them, and those that ropes join, more than two at once.
+
+    Ropes that stretch are forces, which join nothing in an impact.
+    """
     alone, joined = [], []
+    for force in scene.forces:
+        for one, _, _ in terms_of(getattr(force.definition, "joint", None), 0):
+            if isinstance(one, Length) and not is_off(scene, force):
+                alone += [one.parent.index, one.child.index]
     for stop in scene.stops:
         for one, _, _ in terms_of(stop.joint, stop.coordinate):
             if isinstance(one, Length) and not is_off(scene, stop):

@@ -299,7 +299,7 @@ class Axial(Length):
         return (*super().index, "along", *self.axis.tolist())
 
 
-def terms_of(joint: Joint | Combination | Length, coordinate: int | str):
+def terms_of(joint: Joint | Combination | Length | None, coordinate: int | str):
     """Return joints, coordinates and factors of a combination, or the one coordinate of a joint, once."""
     return joint.terms if isinstance(joint, Combination) else ((joint, coordinate, 1.0),)
 

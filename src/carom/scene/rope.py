@@ -1,4 +1,8 @@
-"""Ropes over pulleys: strands that pull, each a stop of a sum of lengths and of angles of wheels."""
+"""Ropes over pulleys: strands that pull, each a stop of a sum of lengths and of angles of wheels.
+
+A rope that stretches has springs in the place of stops. Of the length L and the stiffness k, its part i, of the
+length l_i without tension, has the stiffness k L/l_i: that of the same cross-section.
+"""
 
 from __future__ import annotations
 
@@ -14,9 +18,11 @@ from carom.fields import Number, NumberOrNone, Value, Vector, VectorOrNone
 from carom.geometry.frames import triad
 from carom.scene.bodies import Body, Ground
 from carom.scene.coordinates import Combination, Strand
+from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
 from carom.scene.restitution import Restitution
 from carom.scene.stops import SceneStops, Stop
+from carom.scene.strand_force import BeltStrand
 
 PARALLEL = 1e-9  # cosine: of axes that count as parallel
 LENGTH_ERROR = 1e-9  # length: by which it may be shorter than at the start
@@ -64,9 +70,10 @@ class Pulley:
 
 
 class Rope(NamedTuple):
-    """The stops of a rope, one for each part between wheels without slip. `Scene.add_rope` makes it."""
+    """The parts of a rope, one between two wheels without slip. `Scene.add_rope` makes it."""
 
-    stops: tuple[Stop, ...]
+    stops: tuple[Stop, ...]  #: of a rope of fixed length
+    springs: tuple[AppliedForce, ...] = ()  #: of a rope that stretches
 
 
 class _End(NamedTuple):
@@ -90,6 +97,7 @@ class SceneRope(SceneStops):
         length: float | None = None,
         *,
         stiffness: float | None = None,
+        damping: float = 0.0,
         restitution: float | Restitution = 0.0,
         impact_law: str = "newton",
         name: str | None = None,
@@ -97,7 +105,8 @@ class SceneRope(SceneStops):
         """Add a rope without mass over points and pulleys: it pulls, and does not push.
 
         A rope slides freely through points, and turns wheels on which it does not slip (`carom.Pulley`), so
-        that its tension changes there. It gets taut by an impact, with restitution.
+        that its tension changes there. One of fixed length gets taut by an impact, with restitution; with a
+        stiffness it stretches, and gets taut without an impact.
 
         Parameters
         ----------
@@ -106,12 +115,17 @@ class SceneRope(SceneStops):
             `carom.GROUND`, point in the world at the start), or a `carom.Pulley`. The first and the last are
             the ends, and no pulleys.
         length : float, optional
-            Length of the rope [m], at least that at the start. Default: it is taut at the start. On wheels
-            without slip what is slack is at first in the first part.
-        stiffness : None
-            Elastic ropes over pulleys are not there yet (between two points: `carom.forces.CurveSpring`).
+            Length of the rope without tension [m]. Default: that at the start. On wheels without slip what is
+            slack is at first in the first part. A rope that stretches may be shorter than its way at the start,
+            and has then the same tension in all parts; one of fixed length may not.
+        stiffness : float, optional
+            Of the whole rope [N/m], above 0: its tension if it is longer by 1 m. (Of the modulus E and the
+            cross-section A it is E A/length.) A part between wheels without slip is stiffer as it is
+            shorter; what is laid on such wheels has a constant tension. Default: the length is fixed.
+        damping : float
+            Of a rope that stretches, likewise [N s/m]. Default 0.
         restitution : float or Restitution
-            Of the jerk by which it gets taut, from 0 (default) to 1, or its law.
+            Of the jerk by which a rope of fixed length gets taut, from 0 (default) to 1, or its law.
         impact_law : str
             As for `add_stop`.
         name : str, optional
@@ -121,7 +135,7 @@ class SceneRope(SceneStops):
         Returns
         -------
         Rope
-            With its `stops`.
+            With its `stops`, or its `springs`.
 
         Raises
         ------
@@ -142,40 +156,75 @@ class SceneRope(SceneStops):
         >>> [stop.name for stop in rope.stops]
         ['rope1.1', 'rope1.2']
         """
-        if stiffness is not None:
-            raise ValueError(
-                f"stiffness must be None, got {checks.shown(stiffness)}: elastic ropes over pulleys are not "
-                "there yet; between two points give carom.forces.CurveSpring"
-            )
         ends = [self._end(k, one) for k, one in enumerate(checks.listed("over", over, "Body"))]
         if len(ends) < 2 or ends[0].axis is not None or ends[-1].axis is not None:
             raise ValueError(
                 "over must begin and end with a body or a point, and have two of them at least"
             )
         if name is None:
-            own = {stop.name.partition(".")[0] for stop in self.stops}
+            every = (*self.stops, *self._parts.parts(AppliedForce))
+            own = {part.name.partition(".")[0] for part in every}
             name = next(f"rope{k}" for k in count(1) if f"rope{k}" not in own)
-        parts, slack = _parts(ends, self._wheel_terms), 0.0
+        parts, least = _parts(ends, self._wheel_terms), sum(s.length for s in _strands(ends))
+        if not all(part.terms for part in parts):
+            raise ValueError(
+                "over must have a body in it that moves, got points of the ground alone"
+            )
         if length is not None:
-            least = sum(strand.length for strand in _strands(ends))
             length = checks.number("length", length, above=0.0, unit="m")
-            slack = length - least
-            if slack < -LENGTH_ERROR * length:
+        names = [name] if len(parts) == 1 else [f"{name}.{k + 1}" for k in range(len(parts))]
+        c = checks.number("damping", damping, least=0.0, unit="N s/m")
+        if stiffness is not None:
+            k = checks.number("stiffness", stiffness, above=0.0, unit="N/m")
+            if not (isinstance(restitution, (int, float)) and restitution == 0.0):
                 raise ValueError(
-                    f"length must be at least {least:.9g} m, that at the start, got {length:g}"
+                    "restitution must be left out of a rope with a stiffness, which gets taut without an "
+                    f"impact, got {checks.shown(restitution)}"
                 )
+            return Rope((), self._springs(names, parts, (least, length or least), (k, c)))
+        if c != 0.0:
+            raise ValueError(f"damping must be left out of a rope without stiffness, got {c:g}")
+        slack = 0.0 if length is None else length - least
+        if slack < -LENGTH_ERROR * least:
+            raise ValueError(
+                f"length must be at least {least:.9g} m, that at the start, got {length:g}"
+            )
         stops = []
-        for k, (terms, start) in enumerate(parts):
-            own = name if len(parts) == 1 else f"{name}.{k + 1}"
-            upper = start + (max(0.0, slack) if k == 0 else 0.0)
-            of = terms[0][0] if len(terms) == 1 else Combination._of(terms)
+        for own, part in zip(names, parts):
+            of = part.terms[0][0] if len(part.terms) == 1 else Combination._of(part.terms)
             stops.append(
                 self._parts.make(
-                    Stop, "rope", own, False, joint=of, coordinate=0, upper=upper, restitution=restitution,
-                    impact_law=impact_law,
+                    Stop, "rope", own, False, joint=of, coordinate=0, upper=part.start + max(0.0, slack),
+                    restitution=restitution, impact_law=impact_law,
                 )
             )  # fmt: skip
+            slack = 0.0
         return Rope(tuple(stops))
+
+    def _springs(self, names, parts, lengths, constants) -> tuple[AppliedForce, ...]:
+        """Add the parts of a rope that stretches: (way at the start, length), (stiffness, damping)."""
+        way, length = lengths
+        slack, made = max(0.0, length - way), []
+        for own, part in zip(names, parts):
+            # without tension: all parts are stretched alike at the start, and the first has what is slack
+            relaxed = part.length * min(1.0, length / way) + slack
+            k, c = (value * length / relaxed for value in constants)
+            of, end = Combination._of(part.terms), part.start + relaxed - part.length
+            definition = BeltStrand(of, -k * end, stiffness=k, damping=c)
+            first, last = of.joints[0].child, of.parent
+            made.append(
+                self._parts.make(
+                    AppliedForce,
+                    "rope",
+                    own,
+                    False,
+                    definition=definition,
+                    parent=last,
+                    child=first,
+                )
+            )
+            slack = 0.0
+        return tuple(made)
 
     def _end(self, k: int, one: Any) -> _End:
         """Return what a rope goes over, with parts of the scene."""
@@ -227,6 +276,15 @@ class _Strand(NamedTuple):
     length: float
     axis: np.ndarray | None  #: about which angles are measured
     angle: float | None
+    arcs: tuple[float, float] = (0.0, 0.0)  #: what its length has of the arcs round both circles
+
+
+class _Part(NamedTuple):
+    """A part of a rope between wheels without slip: terms, their sum at the start, and its own length there."""
+
+    terms: list
+    start: float
+    length: float
 
 
 def _strands(ends: list[_End]) -> list[_Strand]:
@@ -237,18 +295,22 @@ def _strands(ends: list[_End]) -> list[_Strand]:
     return out
 
 
-def _parts(ends: list[_End], wheel_terms) -> list[tuple[list, float]]:
-    """Return the terms of each part between wheels without slip, and its value at the start."""
-    out: list[tuple[list, float]] = []
-    terms, total = [], 0.0
-    for b, strand in zip(ends[1:], _strands(ends)):
+def _parts(ends: list[_End], wheel_terms) -> list[_Part]:
+    """Return the parts of a rope."""
+    out: list[_Part] = []
+    terms, start, length = [], 0.0, 0.0
+    for a, b, strand in zip(ends, ends[1:], _strands(ends)):
+        length += strand.length
+        if not a.slips:
+            length -= strand.arcs[0]
         if strand.of is not None:
             terms.append((strand.of, 0, 1.0))
-            total += strand.of.start
+            start += strand.of.start
         if not b.slips:
-            out.append(([*terms, *wheel_terms(b, 1.0)], total))
-            terms, total = wheel_terms(b, -1.0), 0.0
-    return [*out, (terms, total)]
+            length -= strand.arcs[1]
+            out.append(_Part([*terms, *wheel_terms(b, 1.0)], start, length))
+            terms, start, length = wheel_terms(b, -1.0), 0.0, 0.0
+    return [*out, _Part(terms, start, length)]
 
 
 def _strand(a: _End, b: _End, last: _Strand) -> _Strand:
@@ -256,7 +318,9 @@ def _strand(a: _End, b: _End, last: _Strand) -> _Strand:
     own = a.axis if a.axis is not None else b.axis
     if own is None:
         length = float(np.linalg.norm(b.point - a.point))
-        return last._replace(of=_between(a, b, np.zeros(3), np.zeros(2), length), length=length)
+        return last._replace(
+            of=_between(a, b, np.zeros(3), np.zeros(2), length), length=length, arcs=(0.0, 0.0)
+        )
     axis = own if last.axis is None else last.axis
     sides = [0.0 if end.axis is None else float(end.axis @ axis) for end in (a, b)]
     for end, side in zip((a, b), sides):
@@ -280,8 +344,8 @@ def _strand(a: _End, b: _End, last: _Strand) -> _Strand:
     ):  # the arc round a is less than a turn, by its own axis
         way = math.copysign(1.0, sides[0])
         angle = last.angle + way * ((way * (angle - last.angle)) % (2.0 * math.pi))
-    whole = length + rho * angle
-    return _Strand(_between(a, b, axis, radii, whole), whole, axis, angle)
+    whole, arcs = length + rho * angle, (float(radii[0]) * angle, -float(radii[1]) * angle)
+    return _Strand(_between(a, b, axis, radii, whole), whole, axis, angle, arcs)
 
 
 def _between(a: _End, b: _End, axis, radii: np.ndarray, start: float) -> Strand | None:
