@@ -327,6 +327,7 @@ MEMBERS = {
         "Driver": "Motor RotationMotor SpeedMotor PrescribedMotion Actuator",
         "Coupling": "Rack RackAndPinion Differential Mimic",
         "a belt over wheels is carom.joints.Belt, a rope scene.add_rope": "Pulley Belt Chain",
+        "a rope that rubs on a drum is carom.Pulley(..., friction=...), in scene.add_rope": "Capstan BandBrake",
         "Gear": "GearJoint GearRatio",
         "Rows": "Custom UserConstraint Nonholonomic",
         "a limit is made by scene.add_stop(joint, upper=...)": "Limit Stop RotaryLimit",

@@ -264,7 +264,7 @@ def stated():
             dict(length=1.0, anchor_parent=three, anchor_child=three, restitution=0.5, impact_law="newton"),
         ),
         "Pulley": lambda: (
-            carom.Pulley, dict(wheel="wheel", radius=1.0, axis=three, friction=0.0, center=three),
+            carom.Pulley, dict(wheel="wheel", radius=1.0, axis=three, friction=0.0, center=three, turns=0),
         ),
         "joints.KnifeEdge": lambda: (
             joints.KnifeEdge, dict(anchor=three, direction=three, normal=(0, 0, 1.0)),

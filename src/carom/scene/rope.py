@@ -1,7 +1,8 @@
 """Ropes over pulleys: strands that pull, each a stop of a sum of lengths and of angles of wheels.
 
 A rope that stretches has springs in the place of stops. Of the length L and the stiffness k, its part i, of the
-length l_i without tension, has the stiffness k L/l_i: that of the same cross-section.
+length l_i without tension, has the stiffness k L/l_i: that of the same cross-section. A part that rubs on a
+guide is a stop with friction (`carom.kinematics.wrap`).
 """
 
 from __future__ import annotations
@@ -14,10 +15,18 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from carom import arguments, checks, fields
-from carom.fields import Number, NumberOrNone, Value, Vector, VectorOrNone
+from carom.fields import (
+    Integer,
+    Number,
+    NumberOrNone,
+    Value,
+    Vector,
+    VectorOrNone,
+    keep,
+)
 from carom.geometry.frames import triad
 from carom.scene.bodies import Body, Ground
-from carom.scene.coordinates import Combination, Strand
+from carom.scene.coordinates import Combination, Strand, Wrap
 from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
 from carom.scene.restitution import Restitution
@@ -41,18 +50,23 @@ class Pulley:
     Parameters
     ----------
     wheel : Body, str or carom.GROUND
-        The wheel, or the ground for one that does not turn. If the rope does not slip, it is the child of a
-        `Revolute` joint about this axis on the ground; a wheel that moves is one that it slips over.
+        The wheel, or the ground for one that does not turn. If the rope does not slip, or rubs on it, it is the
+        child of a `Revolute` joint about this axis on the ground; a wheel that moves is one that it slips over
+        freely. It may also rub on a part that a joint on the ground keeps from turning.
     radius : float
         Radius of the rope's centre line [m], above 0.
     axis : (3,)
         Axis of the wheel, in the world: the rope goes round it by the right-hand rule, in the order in which
         `add_rope` lists what it goes over. It must keep its direction.
     friction : float, optional
-        None (default): the rope does not slip, and turns the wheel. 0: it slips freely.
+        None (default): the rope does not slip, and turns the wheel (on one of the ground it slips freely). 0:
+        it slips freely. Above 0: it slips where the tension at one side is exp(friction angle) times that at
+        the other one, with the angle that it lies round the guide; one guide of each part of a rope may rub.
     center : (3,), optional
         Centre, in the world at the start [m]. Default: the mass centre of the wheel; of the ground it must be
         given.
+    turns : int
+        Whole turns of the rope round it, beside what it needs (a rope on a bollard). Default 0.
     """
 
     wheel: Value[Any, Any] = Value(_part)
@@ -60,13 +74,7 @@ class Pulley:
     axis: Vector = fields.direction()
     friction: NumberOrNone = fields.number(None, least=0.0)
     center: VectorOrNone = fields.vector(None)
-
-    def __post_init__(self):
-        if self.friction is not None and self.friction > 0.0:
-            raise ValueError(
-                f"friction must be None (no slip) or 0 (free slip), got {self.friction:g}: friction of a rope "
-                "that slips is not there yet"
-            )
+    turns: Integer = fields.integer(0, least=0)
 
 
 class Rope(NamedTuple):
@@ -85,6 +93,8 @@ class _End(NamedTuple):
     radius: float = 0.0
     axis: np.ndarray | None = None
     slips: bool = True
+    friction: float = 0.0
+    turns: int = 0
 
 
 class SceneRope(SceneStops):
@@ -181,6 +191,8 @@ class SceneRope(SceneStops):
                     "restitution must be left out of a rope with a stiffness, which gets taut without an "
                     f"impact, got {checks.shown(restitution)}"
                 )
+            if any(part.wrap for part in parts):
+                raise ValueError("stiffness must be left out of a rope with friction on a pulley")
             return Rope((), self._springs(names, parts, (least, length or least), (k, c)))
         if c != 0.0:
             raise ValueError(f"damping must be left out of a rope without stiffness, got {c:g}")
@@ -191,7 +203,9 @@ class SceneRope(SceneStops):
             )
         stops = []
         for own, part in zip(names, parts):
-            of = part.terms[0][0] if len(part.terms) == 1 else Combination._of(part.terms)
+            of = part.wrap or (
+                part.terms[0][0] if len(part.terms) == 1 else Combination._of(part.terms)
+            )
             stops.append(
                 self._parts.make(
                     Stop, "rope", own, False, joint=of, coordinate=0, upper=part.start + max(0.0, slack),
@@ -237,7 +251,8 @@ class SceneRope(SceneStops):
                 )
             center = wheel.position if one.center is None else one.center
             slips = one.friction is not None or isinstance(wheel, Ground)
-            return _End(wheel, center, one.center, one.radius, one.axis, slips)
+            friction = one.friction or 0.0
+            return _End(wheel, center, one.center, one.radius, one.axis, slips, friction, one.turns)
         if isinstance(one, tuple):
             part, point = one
             at = checks.finite_array(name, point, (3,), "m")
@@ -254,7 +269,9 @@ class SceneRope(SceneStops):
 
     def _wheel_terms(self, end: _End, factor: float) -> list[tuple[Any, int, float]]:
         """Return the angle of a wheel about its axis as a term; none for what the rope slips over."""
-        if end.slips:
+        if end.slips and end.friction == 0.0:
+            return []
+        if isinstance(end.part, Ground):
             return []
         for joint in self._parts.parts(Joint):
             if joint.kind != "Revolute" or joint.child is not end.part:
@@ -263,6 +280,12 @@ class SceneRope(SceneStops):
             # the torque of a joint acts on both its sides, that of a rope on the wheel alone
             if abs(cosine) > 1.0 - PARALLEL and isinstance(joint.parent, Ground):
                 return [(joint, 0, math.copysign(factor * end.radius, factor * cosine))]
+        if end.friction > 0.0 and any(
+            joint.definition.turn == "rigid" and isinstance(joint.parent, Ground)
+            for joint in self._parts.parts(Joint)
+            if joint.child is end.part
+        ):
+            return []
         raise ValueError(
             f"wheel {end.part.name!r} must have a Revolute joint about its axis on carom.GROUND, by which the "
             "rope turns it; over a wheel that moves let it slip: carom.Pulley(..., friction=0)"
@@ -277,6 +300,7 @@ class _Strand(NamedTuple):
     axis: np.ndarray | None  #: about which angles are measured
     angle: float | None
     arcs: tuple[float, float] = (0.0, 0.0)  #: what its length has of the arcs round both circles
+    seen: float = 0.0  #: its angle from where its coordinate begins
 
 
 class _Part(NamedTuple):
@@ -285,6 +309,7 @@ class _Part(NamedTuple):
     terms: list
     start: float
     length: float
+    wrap: Wrap | None = None  #: its terms, if it rubs on a guide
 
 
 def _strands(ends: list[_End]) -> list[_Strand]:
@@ -298,19 +323,55 @@ def _strands(ends: list[_End]) -> list[_Strand]:
 def _parts(ends: list[_End], wheel_terms) -> list[_Part]:
     """Return the parts of a rope."""
     out: list[_Part] = []
-    terms, start, length = [], 0.0, 0.0
-    for a, b, strand in zip(ends, ends[1:], _strands(ends)):
-        length += strand.length
-        if not a.slips:
-            length -= strand.arcs[0]
-        if strand.of is not None:
-            terms.append((strand.of, 0, 1.0))
-            start += strand.of.start
-        if not b.slips:
-            length -= strand.arcs[1]
-            out.append(_Part([*terms, *wheel_terms(b, 1.0)], start, length))
-            terms, start, length = wheel_terms(b, -1.0), 0.0, 0.0
-    return [*out, _Part(terms, start, length)]
+    strands, first = _strands(ends), 0
+    for k in range(1, len(ends)):
+        if not ends[k].slips or k == len(ends) - 1:
+            out.append(_part_of(ends[first : k + 1], strands[first:k], wheel_terms))
+            first = k
+    return out
+
+
+def _part_of(ends: list[_End], strands: list[_Strand], wheel_terms) -> _Part:
+    """Return the part of a rope between its ends, which are points or wheels without slip."""
+    terms = [] if ends[0].slips else wheel_terms(ends[0], -1.0)
+    length = sum(strand.length for strand in strands)
+    length -= 0.0 if ends[0].slips else strands[0].arcs[0]
+    length -= 0.0 if ends[-1].slips else strands[-1].arcs[1]
+    terms += [(strand.of, 0, 1.0) for strand in strands if strand.of is not None]
+    terms += [] if ends[-1].slips else wheel_terms(ends[-1], 1.0)
+    start = sum(strand.of.start for strand in strands if strand.of is not None)
+    rubs = [k for k, end in enumerate(ends) if end.friction > 0.0]
+    if len(rubs) > 1:
+        raise ValueError(
+            "friction must be above 0 for one pulley of each part of a rope between wheels without slip, got "
+            f"{len(rubs)}"
+        )
+    wrap = _wrap(ends, strands, terms, rubs[0], wheel_terms) if rubs else None
+    return _Part(terms, start, length, wrap)
+
+
+def _wrap(ends, strands: list[_Strand], terms: list, k: int, wheel_terms) -> Wrap:
+    """Return the length of a part that rubs on its end k, with the slip there."""
+    before = {id(strand.of) for strand in strands[:k]}
+    behind = {id(strand.of) for strand in strands[k:]}
+    slip = [0.5 * ((id(one) in behind) - (id(one) in before)) for one, _, _ in terms]
+    if not ends[0].slips:
+        slip[0] = -0.5 * terms[0][2]
+    if not ends[-1].slips:
+        slip[-1] = 0.5 * terms[-1][2]
+    turned = wheel_terms(ends[k], -1.0)
+    places = {id(one): n for n, (one, _, _) in enumerate(terms)}
+    around, axis = (strands[k - 1], strands[k]), strands[k].axis
+    assert axis is not None
+    way = 1 if float(ends[k].axis @ axis) > 0.0 else -1
+    made: Any = Wrap._of([*terms, *((joint, at, 0.0) for joint, at, _ in turned)])
+    keep(
+        made, slip=(*slip, *(factor for *_, factor in turned)), way=way, friction=ends[k].friction,
+        strands=tuple(places[id(one.of)] if one.of is not None else -1 for one in around),
+        angles=tuple(one.seen for one in around),
+        arc=way * ((around[1].angle or 0.0) - (around[0].angle or 0.0)),
+    )  # fmt: skip
+    return made
 
 
 def _strand(a: _End, b: _End, last: _Strand) -> _Strand:
@@ -344,8 +405,11 @@ def _strand(a: _End, b: _End, last: _Strand) -> _Strand:
     ):  # the arc round a is less than a turn, by its own axis
         way = math.copysign(1.0, sides[0])
         angle = last.angle + way * ((way * (angle - last.angle)) % (2.0 * math.pi))
+        angle += way * 2.0 * math.pi * a.turns
     whole, arcs = length + rho * angle, (float(radii[0]) * angle, -float(radii[1]) * angle)
-    return _Strand(_between(a, b, axis, radii, whole), whole, axis, angle, arcs)
+    of = _between(a, b, axis, radii, whole)
+    back = isinstance(b.part, Ground) and of is not None
+    return _Strand(of, whole, axis, angle, arcs, angle + math.pi if back else angle)
 
 
 def _between(a: _End, b: _End, axis, radii: np.ndarray, start: float) -> Strand | None:
