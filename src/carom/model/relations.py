@@ -235,7 +235,9 @@ class Elements:
             made = table(arrays.STIFF_SPRING, 1)
             if isinstance(d, Controlled) and d.is_damped_spring:
                 made.stiffness, made.damping = d.spring
-            elif isinstance(d, (Spring, JointSpring)) and d.stiffness + d.damping > 0.0:
+            elif (isinstance(d, JointSpring) and d.is_row) or (
+                isinstance(d, Spring) and d.stiffness + d.damping > 0.0
+            ):
                 made.stiffness, made.damping = d.stiffness, d.damping
             else:
                 continue

@@ -90,6 +90,7 @@ LATER: dict[str, Any] = {
 }  # fmt: skip
 #: the same of fields whose names mean something else in other classes
 LATER_OF: dict[str, dict[str, Any]] = {
+    "Motor": {"start": 0.0},
     "JointFriction": {"mu": None, "radius": None, "length": None},
     "Material": {"young": None, "poisson": 0.3},
 }
