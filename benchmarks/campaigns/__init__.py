@@ -9,6 +9,7 @@ from campaigns import (
     belt_drives,
     belts,
     cams,
+    capstans,
     clearances,
     coordinates,
     crowds,
@@ -50,7 +51,7 @@ FAMILIES = {
     "terrains": terrains.case, "cams": cams.case,
     "laws": laws.case, "frictions": frictions.case, "grains": grains.case, "grains by slip": grains.by_slip,
     "rough": rough.case, "plays": plays.case, "tethers": tethers.case, "ropes": ropes.case,
-    "coordinates": coordinates.case, "drives": drives.case, "clearances": clearances.case,
-    "loads": loads.case, "magnets": magnets.case, "belt drives": belt_drives.case,
-    "gears": gears.case, "switches": switches.case,
+    "capstans": capstans.case, "coordinates": coordinates.case, "drives": drives.case,
+    "clearances": clearances.case, "loads": loads.case, "magnets": magnets.case,
+    "belt drives": belt_drives.case, "gears": gears.case, "switches": switches.case,
 }  # fmt: skip

@@ -46,4 +46,9 @@ def _thrown(name: str, rng, **contact):
         elif m.jnt_type[j] == mujoco.mjtJoint.mjJNT_FREE and rng.random() < 0.5:
             turn = rng.normal(size=4)
             q[at + 3 : at + 7] = turn / np.linalg.norm(turn)
+    for e in np.flatnonzero(m.eq_type == mujoco.mjtEq.mjEQ_TENDON):  # lengths that stay
+        row, first = np.zeros(m.nv), m.tendon_adr[m.eq_obj1id[e]]
+        for w in range(first, first + m.tendon_num[m.eq_obj1id[e]]):
+            row[m.jnt_dofadr[m.wrap_objid[w]]] = m.wrap_prm[w]
+        v -= row * (row @ v) / (row @ row)
     return carom.load_model(m, qpos=q, qvel=v, **contact)

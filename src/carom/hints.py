@@ -314,7 +314,7 @@ MEMBERS = {
         "VelocityServo": "VelocityActuator Velocity",
         "JointInertia": "Armature Rotor ReflectedInertia",
         "Bushing": "Mount",
-        "an elastic rope is CurveSpring, whose tension is 0 up to its length, a stiff one carom.joints.Tether":
+        "an elastic rope is scene.add_rope(..., stiffness=...), one of fixed length carom.joints.Tether":
             "Rope Cable Tether",
         "Drag": "AirDrag AirResistance FluidDrag Aerodynamic",
         "Magnus": "Lift SpinLift",
@@ -327,6 +327,7 @@ MEMBERS = {
         "Driver": "Motor RotationMotor SpeedMotor PrescribedMotion Actuator",
         "Coupling": "Rack RackAndPinion Differential Mimic",
         "a belt over wheels is carom.joints.Belt, a rope scene.add_rope": "Pulley Belt Chain",
+        "a rope that rubs on a drum is carom.Pulley(..., friction=...), in scene.add_rope": "Capstan BandBrake",
         "Gear": "GearJoint GearRatio",
         "Rows": "Custom UserConstraint Nonholonomic",
         "a limit is made by scene.add_stop(joint, upper=...)": "Limit Stop RotaryLimit",

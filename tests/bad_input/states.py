@@ -177,7 +177,7 @@ def stated():
         ),
         "Scene.switch": of_scene("switch", part="@hinge", at=0.5, off=True, name="new"),
         "Scene.add_rope": of_scene(
-            "add_rope", over=["ball", "box"], length=100.0, stiffness=None, restitution=0.5,
+            "add_rope", over=["ball", "box"], length=100.0, stiffness=None, damping=0.0, restitution=0.5,
             impact_law="newton", name="new",
         ),
         "Scene.add_contact": of_scene(
@@ -264,7 +264,7 @@ def stated():
             dict(length=1.0, anchor_parent=three, anchor_child=three, restitution=0.5, impact_law="newton"),
         ),
         "Pulley": lambda: (
-            carom.Pulley, dict(wheel="wheel", radius=1.0, axis=three, friction=0.0, center=three),
+            carom.Pulley, dict(wheel="wheel", radius=1.0, axis=three, friction=0.0, center=three, turns=0),
         ),
         "joints.KnifeEdge": lambda: (
             joints.KnifeEdge, dict(anchor=three, direction=three, normal=(0, 0, 1.0)),

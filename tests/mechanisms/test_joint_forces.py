@@ -297,3 +297,60 @@ def test_a_clock_spring_that_turns_far_in_a_step(contact):
     assert s.potential_energy == pytest.approx(0.5 * inertia * w * w * q * q, abs=1e-5 * energy)
     assert s.angular_velocity[:, 0, 2] == pytest.approx(rate * np.cos(w * s.t), abs=1e-5 * rate)
     assert np.max(np.abs(s.ledger.residual)) < 1e-6 * energy
+
+
+def axles(spins=(1.0, 0.0)):
+    scene = carom.Scene(gravity=(0, 0, 0))
+    for name, x, spin, inertia in zip("ab", (0.0, 1.0), spins, (0.2, 0.5)):
+        body = scene.add_body(
+            mass=1, inertia=(inertia,) * 3, position=(x, 0, 0), angular_velocity=(0, 0, spin)
+        )
+        scene.add_joint(joints.Revolute((x, 0, 0), (0, 0, 1)), GROUND, body, name=name)
+    return scene
+
+
+@pytest.mark.parametrize(
+    "how", [{"rtol": 1e-10}, {"method": "implicit", "step": 1e-3}, {"step": 1e-3, "method": "rk4"}]
+)
+def test_a_spring_along_a_sum(how):
+    """s = a - 2 b: s'' = -(k s + c s')(1/I_a + 4/I_b), and the angular momentum 2 I_a a' + I_b b' stays."""
+    scene, k, c = axles(), 30.0, 0.4
+    scene.add_force(forces.JointSpring({"a": 1.0, "b": -2.0}, k, c), name="shaft")
+    s = carom.simulate(scene, 1.0, **how)
+    ease = 1 / 0.2 + 4 / 0.5
+    damping, f = 0.5 * c * ease, np.sqrt(k * ease - (0.5 * c * ease) ** 2)
+    known = np.exp(-damping * s.t) * np.sin(f * s.t) / f
+    error = 1e-9 if "rtol" in how else 1e-5
+    np.testing.assert_allclose(s["shaft"].coordinate, known, atol=error)
+    np.testing.assert_allclose(s["a"].coordinate - 2 * s["b"].coordinate, known, atol=error)
+    np.testing.assert_allclose(2 * 0.2 * s["a"].rate + 0.5 * s["b"].rate, 0.4, atol=1e-12)
+    np.testing.assert_allclose(
+        s["shaft"].torque, -k * known - c * s["shaft"].rate, atol=1e3 * error
+    )
+
+
+def test_a_servo_along_a_sum():
+    """It brings a + b to its target, with at most its limit."""
+    scene = axles((0.0, 0.0))
+    servo = forces.PositionServo({"a": 1.0, "b": 1.0}, kp=2.0, kd=1.0, limit=0.5, target=1.0)
+    scene.add_force(servo, name="servo")
+    s = carom.simulate(scene, 20.0, rtol=1e-9)
+    assert s["servo"].coordinate[-1] == pytest.approx(1.0, abs=1e-6)
+    assert np.abs(s["servo"].torque).max() == pytest.approx(0.5, abs=1e-12)
+    early = s.t < 0.3  # at the limit
+    np.testing.assert_allclose(
+        s["a"].coordinate[early], 0.5 * 0.5 / 0.2 * s.t[early] ** 2, atol=1e-9
+    )
+
+
+def test_a_control_along_a_sum():
+    """A run sets it; the model-free actuator is listed with its length, the sum times its gear."""
+    scene = axles((0.0, 0.0))
+    scene.add_force(forces.Actuator({"a": 1.0, "b": 3.0}, gear=2.0), name="motor")
+    run = carom.Run(scene, step=1e-2)
+    run.ctrl["motor"] = 0.1
+    run.advance(1.0)
+    state = run.state
+    assert state["motor"].torque == pytest.approx(0.2)
+    assert state["a"].rate == pytest.approx(0.2 / 0.2, abs=1e-12)
+    assert state["b"].rate == pytest.approx(0.6 / 0.5, abs=1e-12)

@@ -177,7 +177,7 @@ def test_changes():
             {"length": 1.0},
             "length must be at least 2.314",
         ),
-        (["a", "b"], {"stiffness": 10.0}, "stiffness must be None"),
+        ([(GROUND, (0, 0, 0)), (GROUND, (1, 0, 0))], {}, "over must have a body in it that moves"),
         (["a", "c"], {}, r"over\[1\] must be"),
     ],
 )
@@ -222,8 +222,3 @@ def test_a_mass_centre_is_an_end_wherever_it_is():
     np.testing.assert_allclose(
         s["cord"].gap, 2.0 - np.linalg.norm(s.position[:, 0], axis=1), atol=1e-9
     )
-
-
-def test_friction_of_a_rope_is_not_there_yet():
-    with pytest.raises(ValueError, match="friction must be None"):
-        carom.Pulley("wheel", R, (0, 1, 0), friction=0.2)

@@ -12,6 +12,7 @@ from carom.kinematics.anisotropy import lengths_of_tangents
 from carom.kinematics.contact_point import power_of_surface
 from carom.law import impact_laws
 from carom.model.parts_of_system import has_relation_rows
+from carom.model.workspace import MOTION_THREE
 
 _NOT_LAW_A = layout.PHASE_JAM | layout.WEDGED
 
@@ -52,6 +53,8 @@ def write_blow(contact, point, state, blow, clock, records):
     row.phases, row.duration = blow.phases, blow.duration
     if contact.axis_of != 0:
         write_plain(row, lengths_of_tangents(point))
+    if point.motion == MOTION_THREE and point.grip > 0.0:
+        write_plain(row, (point.grip, 1.0))
     clock.struck += 1
 
 

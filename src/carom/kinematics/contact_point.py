@@ -54,7 +54,7 @@ def copy_field(p, q):
 def copy_point(p, q):
     """Copy a point."""
     q.a, q.b, q.gap, q.motion, q.length = p.a, p.b, p.gap, p.motion, p.length
-    q.coordinate = p.coordinate
+    q.coordinate, q.grip = p.coordinate, p.grip
     q.owner, q.parts[0], q.parts[1], q.moves = p.owner, p.parts[0], p.parts[1], p.moves
     if p.moves == 1:
         copy_field(p, q)

@@ -1,7 +1,8 @@
 """The rows (n, t1, t2) of a point that are rates of coordinates, times the length of the point.
 
 That of a stop is the first row of its point, that of friction in a joint the second; the others are 0. A
-contact in coordinates of the user's own has three.
+contact in coordinates of the user's own has three, and so has a rope that rubs: the rate of its slack, and that
+of its slip times the `grip` of the point.
 """
 
 from __future__ import annotations
@@ -39,7 +40,7 @@ def rate_in_row(system, point, state) -> tuple[float, float, float]:
     if point.motion != MOTION_THREE:
         return in_row(point, u)
     t1 = rate(system, coordinate_of(system, point, 1), state)
-    return u, t1, rate(system, coordinate_of(system, point, 2), state)
+    return point.length * u, point.grip * t1, rate(system, coordinate_of(system, point, 2), state)
 
 
 @unit(where=has_relations, otherwise=(0.0, 0.0, 0.0))
@@ -49,7 +50,11 @@ def rate_in_pose(system, point, pose, state) -> tuple[float, float, float]:
     if point.motion != MOTION_THREE:
         return in_row(point, u)
     t1 = rate_in(system, coordinate_of(system, point, 1), pose, state)
-    return u, t1, rate_in(system, coordinate_of(system, point, 2), pose, state)
+    return (
+        point.length * u,
+        point.grip * t1,
+        rate_in(system, coordinate_of(system, point, 2), pose, state),
+    )
 
 
 @unit(where=has_relations, otherwise=(0.0, 0.0, 0.0))
@@ -59,7 +64,11 @@ def motion_in_row(system, point, state, work) -> tuple[float, float, float]:
     if point.motion != MOTION_THREE:
         return in_row(point, u)
     t1 = motion_along(system, coordinate_of(system, point, 1), state, work)
-    return u, t1, motion_along(system, coordinate_of(system, point, 2), state, work)
+    return (
+        point.length * u,
+        point.grip * t1,
+        motion_along(system, coordinate_of(system, point, 2), state, work),
+    )
 
 
 @unit(where=has_relations, otherwise=(0.0, 0.0, 0.0))
@@ -69,7 +78,11 @@ def acceleration_in_row(system, point, state, stage) -> tuple[float, float, floa
     if point.motion != MOTION_THREE:
         return in_row(point, u)
     t1 = acceleration_along(system, coordinate_of(system, point, 1), state, stage)
-    return u, t1, acceleration_along(system, coordinate_of(system, point, 2), state, stage)
+    return (
+        point.length * u,
+        point.grip * t1,
+        acceleration_along(system, coordinate_of(system, point, 2), state, stage),
+    )
 
 
 @unit(where=has_relations)
@@ -79,6 +92,7 @@ def push_in_row(system, point, state, p, work):
         amount = p[0] if point.motion == MOTION_STOP else p[1]
         push(system, coordinate_of(system, point, 0), state, point.length * amount, work)
         return
+    factors = (point.length, point.grip, 1.0)
     for r in range(3):
         if p[r] != 0.0:
-            push(system, coordinate_of(system, point, r), state, p[r], work)
+            push(system, coordinate_of(system, point, r), state, factors[r] * p[r], work)

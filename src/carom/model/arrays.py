@@ -158,6 +158,19 @@ TERM = [
     ("parent_side", "i8"),
 ]
 
+#: a rope round a guide on which it rubs (`carom.kinematics.wrap`)
+WRAP = [
+    (
+        "strand",
+        "i8",
+        2,
+    ),  # coordinates of the strands before and behind it, -1 for one that nothing moves
+    ("angle", "f8", 2),  # of these at the start
+    ("way", "f8"),  # 1 if it goes round by the axis of its strands, else -1
+    ("arc", "f8"),  # angle on the guide at the start
+    ("friction", "f8"),
+]
+
 #: rows of the user's: a(q, t) v = b(q, t), as a function (t, poses) -> (rows, 6 bodies + 1)
 USER_ROW = [
     ("address", "i8"),
@@ -223,6 +236,7 @@ CONTACT = [
     ("other_last", "i8"),
     ("solid", "i8"),  # the two solids, if points are found from them; coordinate of a stop
     ("other_solid", "i8"),
+    # (of a stop: 1 + the number of its wrap, 0 if it is no rope that rubs)
     # 1 + the number of the level surface that the row stands for (`contact.kinds.level_surfaces`), 0 for others
     ("surface", "i8"),
     # range of its faces; of the other solid, range of its surfaces in `Levels.own`; the same of the first solid
@@ -352,6 +366,7 @@ class Relations(NamedTuple):
     rotors: np.recarray  # ROTOR
     curves: np.recarray  # CURVE
     curve_pieces: np.recarray  # CURVE_PIECE
+    wraps: np.recarray  # WRAP
     named: np.ndarray  # bodies of the user's functions
     memory: Memory
 

@@ -40,6 +40,7 @@ from carom.model.user_surfaces import add_functions
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, joined_tables, some_pairs
 from carom.scene.coordinates import Combination, Length, terms_of
+from carom.scene.joint_friction import DryFriction
 from carom.scene.more_forces import JointInertia
 from carom.scene.scene import Scene
 from carom.scene.switches import is_off
@@ -347,8 +348,16 @@ def _extents(elements: Elements, joints) -> np.ndarray:
 
 
 def _tethered(scene) -> tuple[np.ndarray, np.ndarray]:
-    """Return the bodies on tethers, -1 among them, and those that ropes join, more than two at once."""
+    """Return the bodies on tethers, -1 among them, and those that ropes join, more than two at once.
+
+    Ropes that stretch are forces, which join nothing in an impact; dry friction does.
+    """
     alone, joined = [], []
+    for force in scene.forces:
+        for one, _, _ in terms_of(getattr(force.definition, "joint", None), 0):
+            if isinstance(one, Length) and not is_off(scene, force):
+                ends = joined if isinstance(force.definition, DryFriction) else alone
+                ends += [one.parent.index, one.child.index]
     for stop in scene.stops:
         for one, _, _ in terms_of(stop.joint, stop.coordinate):
             if isinstance(one, Length) and not is_off(scene, stop):

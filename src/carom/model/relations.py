@@ -25,6 +25,7 @@ from carom.scene.coordinates import (
     Gap,
     Length,
     Strand,
+    Wrap,
     coordinate_kind,
     counted,
     kind_of,
@@ -42,7 +43,13 @@ class Coordinates:
         self.placement = placement
         self.rows: list[np.recarray] = []
         self.numbers: dict[tuple[Any, int | str], int] = {}
-        self.sums: dict[tuple[tuple[int, float], ...], int] = {}  # of combinations, by their terms
+        self.sums: dict[
+            Any, int
+        ] = {}  # of combinations, by their terms; of ropes that rub also by their slip
+        self.listed: list[
+            tuple[int, tuple[tuple[int, float], ...]]
+        ] = []  # combinations, with their terms
+        self.wraps: dict[int, np.recarray] = {}  # of ropes that rub, by the index of their length
         self.curves = Curves()
         self.counted, self.used = 0, False
 
@@ -81,24 +88,46 @@ class Coordinates:
     def _of_terms(self, combination: Combination) -> int:
         """Return the index of a combination in the table; a new one is added, with its terms."""
         terms = tuple((self.number(joint, k), factor) for joint, k, factor in combination.terms)
+        if isinstance(combination, Wrap):
+            return self._of_wrap(combination, [k for k, _ in terms])
         if terms not in self.sums:
-            made, ends = table(arrays.COORDINATE, 1), [self.rows[k][0] for k, _ in terms]
-            moved = [int(one.child if one.child >= 0 else one.parent) for one in ends]
-            other = max(int(ends[0].parent) if ends[0].child >= 0 else -1, -1)
-            made.kind, made.child = arrays.COMBINATION, moved[0]
-            made.parent = moved[-1] if moved[-1] != moved[0] else other
-            self.sums[terms] = len(self.rows)
-            self.rows.append(made)
+            self.sums[terms] = self._sum(terms)
         return self.sums[terms]
+
+    def _of_wrap(self, wrap: Wrap, own: list[int]) -> int:
+        """Return the index of the length of a rope; its slip follows, then a sum that is always 0."""
+        factors, none = tuple(factor for *_, factor in wrap.terms), (0.0,) * len(own)
+        key = (*own, *factors, *wrap.slip)
+        if key not in self.sums:
+            self.sums[key] = len(self.rows)
+            for row in (factors, wrap.slip, none):
+                self._sum(tuple(zip(own, row)))
+            made = table(arrays.WRAP, 1)
+            made.strand[0] = [own[t] if t >= 0 else -1 for t in wrap.strands]
+            made.angle[0], made.way, made.arc = wrap.angles, wrap.way, wrap.arc
+            made.friction = wrap.friction
+            self.wraps[self.sums[key]] = made
+        return self.sums[key]
+
+    def _sum(self, terms: tuple[tuple[int, float], ...]) -> int:
+        """Add the row of a combination; return its index."""
+        made, ends = table(arrays.COORDINATE, 1), [self.rows[k][0] for k, _ in terms]
+        moved = [int(one.child if one.child >= 0 else one.parent) for one in ends]
+        other = max(int(ends[0].parent) if ends[0].child >= 0 else -1, -1)
+        made.kind, made.child = arrays.COMBINATION, moved[0]
+        made.parent = moved[-1] if moved[-1] != moved[0] else other
+        self.listed.append((len(self.rows), terms))
+        self.rows.append(made)
+        return len(self.rows) - 1
+
+    def wrap(self, number: int) -> int:
+        """Return 1 + the number of the wrap of a rope that rubs; 0 for other coordinates."""
+        return 1 + list(self.wraps).index(number) if number in self.wraps else 0
 
     def bodies(self, number: int) -> set[int]:
         """Return the bodies that a coordinate moves."""
         row = self.rows[number][0]
         return {int(row.child), int(row.parent)} - {-1}
-
-    def combinations(self):
-        """Return the index and the terms of each combination."""
-        return [(number, terms) for terms, number in self.sums.items()]
 
     def table(self) -> np.recarray:
         """Return all rows."""
@@ -206,7 +235,9 @@ class Elements:
             made = table(arrays.STIFF_SPRING, 1)
             if isinstance(d, Controlled) and d.is_damped_spring:
                 made.stiffness, made.damping = d.spring
-            elif isinstance(d, (Spring, JointSpring)) and d.stiffness + d.damping > 0.0:
+            elif (isinstance(d, JointSpring) and d.is_row) or (
+                isinstance(d, Spring) and d.stiffness + d.damping > 0.0
+            ):
                 made.stiffness, made.damping = d.stiffness, d.damping
             else:
                 continue
@@ -305,7 +336,7 @@ class Elements:
             self.relations[k].last = len(terms)
             if kind == arrays.INERTIA:
                 solver.rows.compliance[solver.rows.first == first, 0] = 1.0 / next(inertias)
-        for number, own in self.coordinates.combinations():  # no element has them
+        for number, own in self.coordinates.listed:  # no element has them
             made = table(arrays.RELATION_ROW, 1)
             made.first, made.last = len(terms), len(terms) + len(own)
             rows.number[number] = len(self.relations)
@@ -329,6 +360,7 @@ class Elements:
         user = _joined(arrays.USER_ROW, self.user)
         tables = relations, listed, user, self.pieces.rows, *(_joined(*one) for one in forces)
         tables += _joined(arrays.CURVE, curves.rows), _joined(arrays.CURVE_PIECE, curves.pieces)
+        tables += (_joined(arrays.WRAP, list(self.coordinates.wraps.values())),)
         kept = kept._replace(read=read, write=write)
         return arrays.Relations._make([there, self.coordinates.counted, rows, *tables, named, kept])
 
@@ -352,7 +384,7 @@ def no_relations() -> arrays.Relations:
     """Return the tables of a scene without coordinates."""
     a = arrays
     kinds = a.COORDINATE, a.RELATION_ROW, a.TERM, a.USER_ROW, PIECE
-    kinds += a.STIFF_SPRING, a.FRICTION, a.ROTOR, a.CURVE, a.CURVE_PIECE
+    kinds += a.STIFF_SPRING, a.FRICTION, a.ROTOR, a.CURVE, a.CURVE_PIECE, a.WRAP
     named = np.zeros(0, dtype=np.int64)
     return a.Relations._make([0, 0, *(table(kind, 0) for kind in kinds), named, new_memory()])
 

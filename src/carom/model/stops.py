@@ -29,6 +29,7 @@ def with_stops(scene, contacts: np.recarray, elements: Elements, options, laws: 
                 elements.coordinates.number(stop.joint, r)
         c = elements.coordinates.rows[number][0]
         row.number, row.solid, row.kind = first + stop.index, number, OF_JOINT
+        row.other_solid = elements.coordinates.wrap(number)
         row.body, row.other = (c.child, c.parent) if c.child >= 0 else (c.parent, -1)
         size, arm = _sizes(stop, elements.sizes)
         row.side = stop.side * (arm if stop.turns else 1.0)
@@ -63,7 +64,7 @@ def _sizes(stop, sizes: np.ndarray) -> tuple[float, float]:
     if not isinstance(stop.joint, Combination):
         size = sizes[stop.joint.child.index]
         return float(size), float(size)
-    own = [(sizes[joint.child.index], abs(factor)) for joint, _, factor in stop.joint.terms]
+    own = [(sizes[one.child.index], abs(factor)) for one, _, factor in stop.joint.terms if factor]
     return max(size for size, _ in own), min(size / factor for size, factor in own)
 
 

@@ -39,6 +39,10 @@ POINT = [
     ("motion", "i8"),  # that its rows measure: `MOTION_POINT`, ...
     # that converts an angular velocity, or the rate of a coordinate, to a speed; of an upper stop below 0
     ("length", "f8"),
+    (
+        "grip",
+        "f8",
+    ),  # of three coordinates: that converts the rate of the second (`kinematics.wrap`)
     ("coordinate", "i8"),  # of a stop, or of friction in a joint; the first of three
     (
         "moves",

@@ -23,7 +23,7 @@ from carom.geometry import quaternion
 from carom.results.forward_kinematics import Motion, put_ball, put_child, relative, sides_of
 from carom.scene.actuators import Controlled
 from carom.scene.bodies import Body, Ground
-from carom.scene.coordinates import counted
+from carom.scene.coordinates import counted, terms_of
 from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
 
@@ -108,22 +108,27 @@ class Motor:
     ----------
     name : str
     parts : tuple of AppliedForce
-        Forces of the scene, with a `forces.Actuator` each: one, or one for each joint of a tendon; none of an
-        actuator that the scene does not represent.
+        The force of the scene, a `forces.Actuator`; none of an actuator that the scene does not represent.
     terms : tuple of (Coordinate, float)
-        Coordinates and their factors in the length, ``sum of factor q``.
+        Coordinates and their factors in the length, ``sum of factor q``; none of one along a path.
     force_range : (2,) or None
         Its own, without that of its joint.
+    start : float
+        Of one along a path: its length where the coordinate of its force is 0 [m].
     """
 
     name: str
     parts: tuple[AppliedForce, ...]
     terms: tuple[tuple[Coordinate, float], ...]
     force_range: Value[np.ndarray | None, Any] = Value(_array, None)
+    start: Number = fields.number(0.0)
 
     def length(self, solution) -> tuple[Any, Any]:
         """Return the length and its rate, as of `Coordinate.of`."""
         states = checked(solution)
+        if not self.terms and self.parts:
+            gear, along = _actuator(self).gear, states.force(self.parts[0].name)
+            return self.start + gear * along.coordinate, gear * along.rate
         if not self.terms:
             return 0.0, 0.0
         pairs = [one.of(states) for one, _ in self.terms]
@@ -143,11 +148,11 @@ class Motor:
         control = self.control(states)
         if not self.parts:
             return 0.0 * control
-        d, (one, _) = _actuator(self), self.terms[0]
-        q, rate = one.of(states)
+        d, (length, rate) = _actuator(self), self.length(states)
+        length -= self.start + sum(factor * one.start for one, factor in self.terms)
         if d.control_range is not None:
             control = np.clip(control, *d.control_range)
-        force = d.affine(control, d.gear * one.sign * (q - one.start), d.gear * one.sign * rate)
+        force = d.affine(control, length, rate)
         return force if self.force_range is None else np.clip(force, *self.force_range)
 
 
@@ -174,8 +179,12 @@ def commands(scene) -> list[Motor]:
     for force in scene.forces:
         d = force.definition
         if isinstance(d, Controlled) and force.index not in known:
-            along = Coordinate(force.name, d.joint, d.coordinate, 1.0, 0.0, -1, 0, 0)
-            own.append(Motor(force.name, (force,), ((along, d.gear),), d.force_range))
+            terms = tuple(
+                (Coordinate(force.name, joint, int(k), 1.0, 0.0, -1, 0, 0), factor * d.gear)
+                for joint, k, factor in terms_of(d.joint, d.coordinate)
+                if isinstance(joint, Joint)
+            )
+            own.append(Motor(force.name, (force,), terms, d.force_range))
     return own
 
 

@@ -13,15 +13,17 @@ TIPPED = 0.02  # of the length: so far from the plane a strand is .0002 longer t
 
 def tipped_strands(run, states: np.ndarray, times: np.ndarray) -> tuple[str, ...]:
     """Return a sentence about the strand that is tipped most at saved times, if it is by too much."""
-    parts = [(part, stop) for stop in run.scene.stops for part, _, _ in terms_of(stop.joint, 0)]
+    along = [(stop, stop.joint) for stop in run.scene.stops]
+    along += [(one, getattr(one.definition, "joint", None)) for one in run.scene.forces]
+    parts = [(part, one) for one, joint in along for part, _, _ in terms_of(joint, 0)]
     compiled, most, when = run.everything, 0.0, 0.0
-    for strand, stop in parts:
+    for strand, rope in parts:
         if not isinstance(strand, Strand) or not strand.axis.any():
             continue
         row = compiled.system.relations.coordinates[compiled.numbers[strand.index, 0]]
         d = _end(row.child, row.child_anchor, states) - _end(row.parent, row.parent_anchor, states)
         away = np.abs(d @ strand.axis) / np.linalg.norm(d, axis=-1)
-        away = away * rows_with(run, stop, len(states))
+        away = away * rows_with(run, rope, len(states))
         if away.max() > most:
             most, when = float(away.max()), float(times[np.argmax(away)])
     if not most > TIPPED:

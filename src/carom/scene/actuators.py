@@ -9,6 +9,7 @@ import numpy as np
 
 from carom import arguments, checks, fields
 from carom.fields import Integer, Number, NumberOrNone, Value, Vector, VectorOrNone
+from carom.scene.coordinates import Along, Combination, joint_or_combination
 from carom.scene.more_forces import PUSH, AlongJoint
 
 
@@ -24,6 +25,7 @@ class Controlled(AlongJoint):
     """A force along a joint coordinate, affine in a control, the coordinate and its rate, within a range."""
 
     table = PUSH
+    joint: Along = Value(joint_or_combination)
     if not TYPE_CHECKING:  # fields of those that have them, which a class variable must not become
         gear, control_range, no_load = 1.0, None, None
 
@@ -83,7 +85,9 @@ class Controlled(AlongJoint):
     @property
     def is_damped_spring(self) -> bool:
         """Whether it has a spring and damper that an implicit step may take as a row."""
-        return not self.law and min(self.spring) >= 0.0 and max(self.spring) > 0.0
+        if self.law or isinstance(self.joint, Combination):
+            return False
+        return min(self.spring) >= 0.0 and max(self.spring) > 0.0
 
     @property
     def law(self) -> bool:
@@ -142,7 +146,8 @@ class Actuator(Controlled):
 
     Parameters
     ----------
-    joint : Joint
+    joint : Joint, str or mapping
+        The joint, or its name; or a mapping from joints to factors, which states a sum of their coordinates.
     gain : float
         Force by control. Default 1: the control is the force.
     bias : (3,)
@@ -212,8 +217,8 @@ class PositionServo(Servo):
 
     Parameters
     ----------
-    joint : Joint or str
-        The joint, or its name.
+    joint : Joint, str or mapping
+        The joint, or its name; or a mapping from joints to factors, which states a sum of their coordinates.
     kp : float
         Stiffness [N/m or N m/rad], at least 0.
     kd : float
@@ -257,8 +262,8 @@ class VelocityServo(Servo):
 
     Parameters
     ----------
-    joint : Joint or str
-        The joint, or its name.
+    joint : Joint, str or mapping
+        The joint, or its name; or a mapping from joints to factors, which states a sum of their coordinates.
     kv : float
         Force by rate [N s/m or N m s/rad], at least 0.
     limit : float, optional

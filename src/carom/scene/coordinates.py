@@ -257,6 +257,36 @@ class Strand(Length):
         return (*super().index, *self.axis.tolist(), *self.radii.tolist(), self.start)
 
 
+@dataclass(frozen=True, init=False, eq=False)
+class Wrap(Combination):
+    """The length of a rope, part of which lies round a guide on which it rubs, with its slip on this.
+
+    The slip is half the difference of what is behind the guide and before it, less what a wheel has turned.
+
+    Attributes
+    ----------
+    slip : tuple of float
+        Factor of each term in the slip [m].
+    strands : tuple of two int
+        Numbers of the terms of the strands before and behind the guide, -1 for one that nothing moves.
+    angles : tuple of two float
+        Angles of these strands at the start [rad].
+    way : int
+        1 if the rope goes round the guide by the axis of its strands, else -1.
+    arc : float
+        Angle that lies on the guide at the start, with whole turns [rad].
+    friction : float
+        Coefficient of friction.
+    """
+
+    slip: tuple[float, ...]
+    strands: tuple[int, int]
+    angles: tuple[float, float]
+    way: int
+    arc: float
+    friction: float
+
+
 @dataclass(frozen=True, eq=False)
 class Bush(Length):
     """The distance of the centre of a pin, a point of the child, from the axis of its bush, in the parent.
@@ -299,7 +329,7 @@ class Axial(Length):
         return (*super().index, "along", *self.axis.tolist())
 
 
-def terms_of(joint: Joint | Combination | Length, coordinate: int | str):
+def terms_of(joint: Joint | Combination | Length | None, coordinate: int | str):
     """Return joints, coordinates and factors of a combination, or the one coordinate of a joint, once."""
     return joint.terms if isinstance(joint, Combination) else ((joint, coordinate, 1.0),)
 

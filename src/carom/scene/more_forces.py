@@ -20,8 +20,11 @@ from carom.fields import (
 from carom.scene.body_forces import SPRING, both_ends
 from carom.scene.constraints import Bodies, distinct_bodies
 from carom.scene.coordinates import (
+    Along,
+    Combination,
     OneJoint,
     acts_along,
+    joint_or_combination,
     joint_or_name,
     kind_of,
 )
@@ -94,8 +97,9 @@ class JointSpring(AlongJoint):
 
     Parameters
     ----------
-    joint : Joint or str
-        The joint, or its name.
+    joint : Joint, str or mapping
+        The joint, or its name; or a mapping from joints to factors, which states a sum of their coordinates
+        (`Scene.add_play`). Along a sum it is explicit in all methods.
     stiffness, damping : float
         For an angle [N m/rad] and [N m s/rad], for a displacement [N/m] and [N s/m]; at least 0. Default 0.
     rest : float
@@ -106,13 +110,19 @@ class JointSpring(AlongJoint):
 
     table = PUSH
 
+    joint: Along = Value(joint_or_combination)
     stiffness: Number = fields.number(0.0, least=0.0)
     damping: Number = fields.number(0.0, least=0.0)
     rest: Number = fields.number(0.0)
     coordinate: Integer = fields.integer(0, least=0)
 
+    @property
+    def is_row(self) -> bool:
+        """Whether it is a row of an implicit step."""
+        return not isinstance(self.joint, Combination) and self.stiffness + self.damping > 0.0
+
     def _rows(self, force, arrays) -> list[dict[str, Any]]:
-        return [] if arrays.implicit else super()._rows(force, arrays)  # else a row of the solve
+        return [] if arrays.implicit and self.is_row else super()._rows(force, arrays)
 
 
 def _number_or_function(name: str, value) -> float | Callable:

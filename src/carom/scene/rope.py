@@ -1,4 +1,9 @@
-"""Ropes over pulleys: strands that pull, each a stop of a sum of lengths and of angles of wheels."""
+"""Ropes over pulleys: strands that pull, each a stop of a sum of lengths and of angles of wheels.
+
+A rope that stretches has springs in the place of stops. Of the length L and the stiffness k, its part i, of the
+length l_i without tension, has the stiffness k L/l_i: that of the same cross-section. A part that rubs on a
+guide is a stop with friction (`carom.kinematics.wrap`).
+"""
 
 from __future__ import annotations
 
@@ -10,13 +15,23 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from carom import arguments, checks, fields
-from carom.fields import Number, NumberOrNone, Value, Vector, VectorOrNone
+from carom.fields import (
+    Integer,
+    Number,
+    NumberOrNone,
+    Value,
+    Vector,
+    VectorOrNone,
+    keep,
+)
 from carom.geometry.frames import triad
 from carom.scene.bodies import Body, Ground
-from carom.scene.coordinates import Combination, Strand
+from carom.scene.coordinates import Combination, Strand, Wrap
+from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
 from carom.scene.restitution import Restitution
 from carom.scene.stops import SceneStops, Stop
+from carom.scene.strand_force import BeltStrand
 
 PARALLEL = 1e-9  # cosine: of axes that count as parallel
 LENGTH_ERROR = 1e-9  # length: by which it may be shorter than at the start
@@ -35,18 +50,23 @@ class Pulley:
     Parameters
     ----------
     wheel : Body, str or carom.GROUND
-        The wheel, or the ground for one that does not turn. If the rope does not slip, it is the child of a
-        `Revolute` joint about this axis on the ground; a wheel that moves is one that it slips over.
+        The wheel, or the ground for one that does not turn. If the rope does not slip, or rubs on it, it is the
+        child of a `Revolute` joint about this axis on the ground; a wheel that moves is one that it slips over
+        freely. It may also rub on a part that a joint on the ground keeps from turning.
     radius : float
         Radius of the rope's centre line [m], above 0.
     axis : (3,)
         Axis of the wheel, in the world: the rope goes round it by the right-hand rule, in the order in which
         `add_rope` lists what it goes over. It must keep its direction.
     friction : float, optional
-        None (default): the rope does not slip, and turns the wheel. 0: it slips freely.
+        None (default): the rope does not slip, and turns the wheel (on one of the ground it slips freely). 0:
+        it slips freely. Above 0: it slips where the tension at one side is exp(friction angle) times that at
+        the other one, with the angle that it lies round the guide; one guide of each part of a rope may rub.
     center : (3,), optional
         Centre, in the world at the start [m]. Default: the mass centre of the wheel; of the ground it must be
         given.
+    turns : int
+        Whole turns of the rope round it, beside what it needs (a rope on a bollard). Default 0.
     """
 
     wheel: Value[Any, Any] = Value(_part)
@@ -54,19 +74,14 @@ class Pulley:
     axis: Vector = fields.direction()
     friction: NumberOrNone = fields.number(None, least=0.0)
     center: VectorOrNone = fields.vector(None)
-
-    def __post_init__(self):
-        if self.friction is not None and self.friction > 0.0:
-            raise ValueError(
-                f"friction must be None (no slip) or 0 (free slip), got {self.friction:g}: friction of a rope "
-                "that slips is not there yet"
-            )
+    turns: Integer = fields.integer(0, least=0)
 
 
 class Rope(NamedTuple):
-    """The stops of a rope, one for each part between wheels without slip. `Scene.add_rope` makes it."""
+    """The parts of a rope, one between two wheels without slip. `Scene.add_rope` makes it."""
 
-    stops: tuple[Stop, ...]
+    stops: tuple[Stop, ...]  #: of a rope of fixed length
+    springs: tuple[AppliedForce, ...] = ()  #: of a rope that stretches
 
 
 class _End(NamedTuple):
@@ -78,6 +93,8 @@ class _End(NamedTuple):
     radius: float = 0.0
     axis: np.ndarray | None = None
     slips: bool = True
+    friction: float = 0.0
+    turns: int = 0
 
 
 class SceneRope(SceneStops):
@@ -90,6 +107,7 @@ class SceneRope(SceneStops):
         length: float | None = None,
         *,
         stiffness: float | None = None,
+        damping: float = 0.0,
         restitution: float | Restitution = 0.0,
         impact_law: str = "newton",
         name: str | None = None,
@@ -97,7 +115,8 @@ class SceneRope(SceneStops):
         """Add a rope without mass over points and pulleys: it pulls, and does not push.
 
         A rope slides freely through points, and turns wheels on which it does not slip (`carom.Pulley`), so
-        that its tension changes there. It gets taut by an impact, with restitution.
+        that its tension changes there. One of fixed length gets taut by an impact, with restitution; with a
+        stiffness it stretches, and gets taut without an impact.
 
         Parameters
         ----------
@@ -106,12 +125,17 @@ class SceneRope(SceneStops):
             `carom.GROUND`, point in the world at the start), or a `carom.Pulley`. The first and the last are
             the ends, and no pulleys.
         length : float, optional
-            Length of the rope [m], at least that at the start. Default: it is taut at the start. On wheels
-            without slip what is slack is at first in the first part.
-        stiffness : None
-            Elastic ropes over pulleys are not there yet (between two points: `carom.forces.CurveSpring`).
+            Length of the rope without tension [m]. Default: that at the start. On wheels without slip what is
+            slack is at first in the first part. A rope that stretches may be shorter than its way at the start,
+            and has then the same tension in all parts; one of fixed length may not.
+        stiffness : float, optional
+            Of the whole rope [N/m], above 0: its tension if it is longer by 1 m. (Of the modulus E and the
+            cross-section A it is E A/length.) A part between wheels without slip is stiffer as it is
+            shorter; what is laid on such wheels has a constant tension. Default: the length is fixed.
+        damping : float
+            Of a rope that stretches, likewise [N s/m]. Default 0.
         restitution : float or Restitution
-            Of the jerk by which it gets taut, from 0 (default) to 1, or its law.
+            Of the jerk by which a rope of fixed length gets taut, from 0 (default) to 1, or its law.
         impact_law : str
             As for `add_stop`.
         name : str, optional
@@ -121,7 +145,7 @@ class SceneRope(SceneStops):
         Returns
         -------
         Rope
-            With its `stops`.
+            With its `stops`, or its `springs`.
 
         Raises
         ------
@@ -142,40 +166,79 @@ class SceneRope(SceneStops):
         >>> [stop.name for stop in rope.stops]
         ['rope1.1', 'rope1.2']
         """
-        if stiffness is not None:
-            raise ValueError(
-                f"stiffness must be None, got {checks.shown(stiffness)}: elastic ropes over pulleys are not "
-                "there yet; between two points give carom.forces.CurveSpring"
-            )
         ends = [self._end(k, one) for k, one in enumerate(checks.listed("over", over, "Body"))]
         if len(ends) < 2 or ends[0].axis is not None or ends[-1].axis is not None:
             raise ValueError(
                 "over must begin and end with a body or a point, and have two of them at least"
             )
         if name is None:
-            own = {stop.name.partition(".")[0] for stop in self.stops}
+            every = (*self.stops, *self._parts.parts(AppliedForce))
+            own = {part.name.partition(".")[0] for part in every}
             name = next(f"rope{k}" for k in count(1) if f"rope{k}" not in own)
-        parts, slack = _parts(ends, self._wheel_terms), 0.0
+        parts, least = _parts(ends, self._wheel_terms), sum(s.length for s in _strands(ends))
+        if not all(part.terms for part in parts):
+            raise ValueError(
+                "over must have a body in it that moves, got points of the ground alone"
+            )
         if length is not None:
-            least = sum(strand.length for strand in _strands(ends))
             length = checks.number("length", length, above=0.0, unit="m")
-            slack = length - least
-            if slack < -LENGTH_ERROR * length:
+        names = [name] if len(parts) == 1 else [f"{name}.{k + 1}" for k in range(len(parts))]
+        c = checks.number("damping", damping, least=0.0, unit="N s/m")
+        if stiffness is not None:
+            k = checks.number("stiffness", stiffness, above=0.0, unit="N/m")
+            if not (isinstance(restitution, (int, float)) and restitution == 0.0):
                 raise ValueError(
-                    f"length must be at least {least:.9g} m, that at the start, got {length:g}"
+                    "restitution must be left out of a rope with a stiffness, which gets taut without an "
+                    f"impact, got {checks.shown(restitution)}"
                 )
+            if any(part.wrap for part in parts):
+                raise ValueError("stiffness must be left out of a rope with friction on a pulley")
+            return Rope((), self._springs(names, parts, (least, length or least), (k, c)))
+        if c != 0.0:
+            raise ValueError(f"damping must be left out of a rope without stiffness, got {c:g}")
+        slack = 0.0 if length is None else length - least
+        if slack < -LENGTH_ERROR * least:
+            raise ValueError(
+                f"length must be at least {least:.9g} m, that at the start, got {length:g}"
+            )
         stops = []
-        for k, (terms, start) in enumerate(parts):
-            own = name if len(parts) == 1 else f"{name}.{k + 1}"
-            upper = start + (max(0.0, slack) if k == 0 else 0.0)
-            of = terms[0][0] if len(terms) == 1 else Combination._of(terms)
+        for own, part in zip(names, parts):
+            of = part.wrap or (
+                part.terms[0][0] if len(part.terms) == 1 else Combination._of(part.terms)
+            )
             stops.append(
                 self._parts.make(
-                    Stop, "rope", own, False, joint=of, coordinate=0, upper=upper, restitution=restitution,
-                    impact_law=impact_law,
+                    Stop, "rope", own, False, joint=of, coordinate=0, upper=part.start + max(0.0, slack),
+                    restitution=restitution, impact_law=impact_law,
                 )
             )  # fmt: skip
+            slack = 0.0
         return Rope(tuple(stops))
+
+    def _springs(self, names, parts, lengths, constants) -> tuple[AppliedForce, ...]:
+        """Add the parts of a rope that stretches: (way at the start, length), (stiffness, damping)."""
+        way, length = lengths
+        slack, made = max(0.0, length - way), []
+        for own, part in zip(names, parts):
+            # without tension: all parts are stretched alike at the start, and the first has what is slack
+            relaxed = part.length * min(1.0, length / way) + slack
+            k, c = (value * length / relaxed for value in constants)
+            of, end = Combination._of(part.terms), part.start + relaxed - part.length
+            definition = BeltStrand(of, -k * end, stiffness=k, damping=c)
+            first, last = of.joints[0].child, of.parent
+            made.append(
+                self._parts.make(
+                    AppliedForce,
+                    "rope",
+                    own,
+                    False,
+                    definition=definition,
+                    parent=last,
+                    child=first,
+                )
+            )
+            slack = 0.0
+        return tuple(made)
 
     def _end(self, k: int, one: Any) -> _End:
         """Return what a rope goes over, with parts of the scene."""
@@ -188,7 +251,8 @@ class SceneRope(SceneStops):
                 )
             center = wheel.position if one.center is None else one.center
             slips = one.friction is not None or isinstance(wheel, Ground)
-            return _End(wheel, center, one.center, one.radius, one.axis, slips)
+            friction = one.friction or 0.0
+            return _End(wheel, center, one.center, one.radius, one.axis, slips, friction, one.turns)
         if isinstance(one, tuple):
             part, point = one
             at = checks.finite_array(name, point, (3,), "m")
@@ -205,7 +269,9 @@ class SceneRope(SceneStops):
 
     def _wheel_terms(self, end: _End, factor: float) -> list[tuple[Any, int, float]]:
         """Return the angle of a wheel about its axis as a term; none for what the rope slips over."""
-        if end.slips:
+        if end.slips and end.friction == 0.0:
+            return []
+        if isinstance(end.part, Ground):
             return []
         for joint in self._parts.parts(Joint):
             if joint.kind != "Revolute" or joint.child is not end.part:
@@ -214,6 +280,12 @@ class SceneRope(SceneStops):
             # the torque of a joint acts on both its sides, that of a rope on the wheel alone
             if abs(cosine) > 1.0 - PARALLEL and isinstance(joint.parent, Ground):
                 return [(joint, 0, math.copysign(factor * end.radius, factor * cosine))]
+        if end.friction > 0.0 and any(
+            joint.definition.turn == "rigid" and isinstance(joint.parent, Ground)
+            for joint in self._parts.parts(Joint)
+            if joint.child is end.part
+        ):
+            return []
         raise ValueError(
             f"wheel {end.part.name!r} must have a Revolute joint about its axis on carom.GROUND, by which the "
             "rope turns it; over a wheel that moves let it slip: carom.Pulley(..., friction=0)"
@@ -227,6 +299,17 @@ class _Strand(NamedTuple):
     length: float
     axis: np.ndarray | None  #: about which angles are measured
     angle: float | None
+    arcs: tuple[float, float] = (0.0, 0.0)  #: what its length has of the arcs round both circles
+    seen: float = 0.0  #: its angle from where its coordinate begins
+
+
+class _Part(NamedTuple):
+    """A part of a rope between wheels without slip: terms, their sum at the start, and its own length there."""
+
+    terms: list
+    start: float
+    length: float
+    wrap: Wrap | None = None  #: its terms, if it rubs on a guide
 
 
 def _strands(ends: list[_End]) -> list[_Strand]:
@@ -237,18 +320,58 @@ def _strands(ends: list[_End]) -> list[_Strand]:
     return out
 
 
-def _parts(ends: list[_End], wheel_terms) -> list[tuple[list, float]]:
-    """Return the terms of each part between wheels without slip, and its value at the start."""
-    out: list[tuple[list, float]] = []
-    terms, total = [], 0.0
-    for b, strand in zip(ends[1:], _strands(ends)):
-        if strand.of is not None:
-            terms.append((strand.of, 0, 1.0))
-            total += strand.of.start
-        if not b.slips:
-            out.append(([*terms, *wheel_terms(b, 1.0)], total))
-            terms, total = wheel_terms(b, -1.0), 0.0
-    return [*out, (terms, total)]
+def _parts(ends: list[_End], wheel_terms) -> list[_Part]:
+    """Return the parts of a rope."""
+    out: list[_Part] = []
+    strands, first = _strands(ends), 0
+    for k in range(1, len(ends)):
+        if not ends[k].slips or k == len(ends) - 1:
+            out.append(_part_of(ends[first : k + 1], strands[first:k], wheel_terms))
+            first = k
+    return out
+
+
+def _part_of(ends: list[_End], strands: list[_Strand], wheel_terms) -> _Part:
+    """Return the part of a rope between its ends, which are points or wheels without slip."""
+    terms = [] if ends[0].slips else wheel_terms(ends[0], -1.0)
+    length = sum(strand.length for strand in strands)
+    length -= 0.0 if ends[0].slips else strands[0].arcs[0]
+    length -= 0.0 if ends[-1].slips else strands[-1].arcs[1]
+    terms += [(strand.of, 0, 1.0) for strand in strands if strand.of is not None]
+    terms += [] if ends[-1].slips else wheel_terms(ends[-1], 1.0)
+    start = sum(strand.of.start for strand in strands if strand.of is not None)
+    rubs = [k for k, end in enumerate(ends) if end.friction > 0.0]
+    if len(rubs) > 1:
+        raise ValueError(
+            "friction must be above 0 for one pulley of each part of a rope between wheels without slip, got "
+            f"{len(rubs)}"
+        )
+    wrap = _wrap(ends, strands, terms, rubs[0], wheel_terms) if rubs else None
+    return _Part(terms, start, length, wrap)
+
+
+def _wrap(ends, strands: list[_Strand], terms: list, k: int, wheel_terms) -> Wrap:
+    """Return the length of a part that rubs on its end k, with the slip there."""
+    before = {id(strand.of) for strand in strands[:k]}
+    behind = {id(strand.of) for strand in strands[k:]}
+    slip = [0.5 * ((id(one) in behind) - (id(one) in before)) for one, _, _ in terms]
+    if not ends[0].slips:
+        slip[0] = -0.5 * terms[0][2]
+    if not ends[-1].slips:
+        slip[-1] = 0.5 * terms[-1][2]
+    turned = wheel_terms(ends[k], -1.0)
+    places = {id(one): n for n, (one, _, _) in enumerate(terms)}
+    around, axis = (strands[k - 1], strands[k]), strands[k].axis
+    assert axis is not None
+    way = 1 if float(ends[k].axis @ axis) > 0.0 else -1
+    made: Any = Wrap._of([*terms, *((joint, at, 0.0) for joint, at, _ in turned)])
+    keep(
+        made, slip=(*slip, *(factor for *_, factor in turned)), way=way, friction=ends[k].friction,
+        strands=tuple(places[id(one.of)] if one.of is not None else -1 for one in around),
+        angles=tuple(one.seen for one in around),
+        arc=way * ((around[1].angle or 0.0) - (around[0].angle or 0.0)),
+    )  # fmt: skip
+    return made
 
 
 def _strand(a: _End, b: _End, last: _Strand) -> _Strand:
@@ -256,7 +379,9 @@ def _strand(a: _End, b: _End, last: _Strand) -> _Strand:
     own = a.axis if a.axis is not None else b.axis
     if own is None:
         length = float(np.linalg.norm(b.point - a.point))
-        return last._replace(of=_between(a, b, np.zeros(3), np.zeros(2), length), length=length)
+        return last._replace(
+            of=_between(a, b, np.zeros(3), np.zeros(2), length), length=length, arcs=(0.0, 0.0)
+        )
     axis = own if last.axis is None else last.axis
     sides = [0.0 if end.axis is None else float(end.axis @ axis) for end in (a, b)]
     for end, side in zip((a, b), sides):
@@ -280,8 +405,11 @@ def _strand(a: _End, b: _End, last: _Strand) -> _Strand:
     ):  # the arc round a is less than a turn, by its own axis
         way = math.copysign(1.0, sides[0])
         angle = last.angle + way * ((way * (angle - last.angle)) % (2.0 * math.pi))
-    whole = length + rho * angle
-    return _Strand(_between(a, b, axis, radii, whole), whole, axis, angle)
+        angle += way * 2.0 * math.pi * a.turns
+    whole, arcs = length + rho * angle, (float(radii[0]) * angle, -float(radii[1]) * angle)
+    of = _between(a, b, axis, radii, whole)
+    back = isinstance(b.part, Ground) and of is not None
+    return _Strand(of, whole, axis, angle, arcs, angle + math.pi if back else angle)
 
 
 def _between(a: _End, b: _End, axis, radii: np.ndarray, start: float) -> Strand | None:

@@ -1,4 +1,4 @@
-"""`BeltStrand`: the tension of a strand of a belt, which pulls and does not push."""
+"""`BeltStrand`: the tension of a strand of a belt, or of a part of a rope, which pulls and does not push."""
 
 from __future__ import annotations
 
@@ -19,7 +19,7 @@ class BeltStrand(AlongJoint):
 
     Its tension is ``tension + stiffness s + damping s'``, or 0 where this is below 0 and it hangs slack, and it
     acts against the growth of the coordinate s. `Scene.add_joint` makes two of them of a `carom.joints.Belt`
-    with a stiffness.
+    with a stiffness, and `Scene.add_rope` one of each part of a rope with a stiffness.
 
     Parameters
     ----------

@@ -15,7 +15,7 @@ from carom.kinematics.coordinate import along, slides
 from carom.kinematics.joints import child_arm, parent_arm
 from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.records import GROW
-from carom.model.workspace import MOTION_STOP
+from carom.model.workspace import MOTION_STOP, MOTION_THREE
 from carom.stepping.energy_balance import begin_watch, note_energies
 
 
@@ -92,7 +92,9 @@ def save_contacts(model, data, k):
         active_point, point, touch = active.points[i], work.placed[0], records.touch[clock.touched]
         contact = system.contacts[active_point.contact]
         place(system, contact, active_point, now, point, work)
-        if point.motion == MOTION_STOP:
+        if point.motion == MOTION_STOP or (
+            point.motion == MOTION_THREE and contact.other_solid > 0
+        ):
             save_stop(model, data, k, i)
             continue
         E, arm, other = point.axes, point.arm_a, point.arm_b
@@ -138,10 +140,19 @@ def save_stop(model, data, k, i):
         save_along(model, data, (k, i), c, force)
         return
     first, last = terms_of(system, c)
+    rubs, slip = point.grip * active_point.force[1], 0
+    if point.motion == MOTION_THREE:  # the terms of its slip are those of its length
+        slip, _ = terms_of(system, system.relations.coordinates[point.coordinate + 1])
     for t in range(first, last):
-        save_along(model, data, (k, i), term_of(system, t), factor_of(system, t) * force)
+        along_term = factor_of(system, t) * force
+        if point.motion == MOTION_THREE:
+            along_term += factor_of(system, slip + t - first) * rubs
+        save_along(model, data, (k, i), term_of(system, t), along_term)
+        touch = data.records.touch[data.clocks[0].touched - 1]
         if t > first:  # the first row has the force of the stop
-            data.records.touch[data.clocks[0].touched - 1].force[0] = 0.0
+            touch.force[0] = 0.0
+        elif point.motion == MOTION_THREE:
+            touch.force[1] = rubs
 
 
 @kernel

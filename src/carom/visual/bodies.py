@@ -313,26 +313,31 @@ def links_of(scene) -> list[Link]:
             kind = "rod" if isinstance(d, Distance) else "spring"
             out.append(Link(one.parent.index, one.child.index, start, end, kind))
     out += [link for one in scene.constraints for link in _strands_of(one.definition)]
+    along = [getattr(one.definition, "joint", None) for one in scene.forces]
     out += [
-        link for one in scene.forces for link in _strands_of(getattr(one.definition, "joint", None))
+        link for of in (*along, *(stop.joint for stop in scene.stops)) for link in _strands_of(of)
     ]
-    out += [link for one in scene.stops for link in _strands_of(one.joint)]
     rods = {id(stop.joint) for stop in scene.stops if stop.upper is None}
+    for of in along:
+        for one, _, _ in terms_of(of, 0):
+            out += _cord(one, "cord", 0.0)
     for stop in scene.stops:
-        for of, _, _ in terms_of(stop.joint, stop.coordinate):
-            hidden = isinstance(of, (Bush, Axial)) or (
-                stop.upper is not None and id(stop.joint) in rods
-            )
-            if isinstance(of, Length) and not hidden:
-                ends = _in_body(of.parent, of.ends[0]), _in_body(of.child, of.ends[1])
-                pair = of.parent.index, of.child.index
-                if isinstance(of, Strand):
-                    out.append(Link(*pair, *ends, "cord", 0.0, of.radii, of.axis))
-                elif stop.upper is None:
-                    out.append(Link(*pair, *ends, "rod"))
-                else:
-                    out.append(Link(*pair, *ends, "cord", stop.end))
+        kind = "rod" if stop.upper is None else "cord"
+        for one, _, _ in terms_of(stop.joint, stop.coordinate):
+            if kind == "rod" or id(stop.joint) not in rods:
+                out += _cord(one, kind, stop.end if kind == "cord" else 0.0)
     return out
+
+
+def _cord(of: Any, kind: str, length: float) -> list[Link]:
+    """Return a strand of a rope, or a massless rod or cord; none of any other coordinate."""
+    if not isinstance(of, Length) or isinstance(of, (Bush, Axial)):
+        return []
+    ends = _in_body(of.parent, of.ends[0]), _in_body(of.child, of.ends[1])
+    pair = of.parent.index, of.child.index
+    if isinstance(of, Strand):
+        return [Link(*pair, *ends, "cord", 0.0, of.radii, of.axis)]
+    return [Link(*pair, *ends, kind, length)]
 
 
 def _strands_of(of: Any) -> list[Link]:

@@ -37,12 +37,19 @@ from carom.kinematics.coordinate import (
     turns_with_place,
 )
 from carom.kinematics.joints import child_arm, parent_arm
+from carom.kinematics.wrap import grip, grip_rate
 from carom.model.actions import NOTHING, PERSIST, STRIKE
 from carom.model.parts_of_system import has_metric
 from carom.model.workspace import MOTION_STOP, MOTION_THREE
 from carom.status import FUNCTION_FAILED
 
 located_within, rounding = gaps.located_within, round_off
+
+
+@kernel
+def wrap_of(system, contact):
+    """Return the wrap of a rope that rubs."""
+    return system.relations.wraps[contact.other_solid - 1]
 
 
 @unit
@@ -68,7 +75,10 @@ def place_stop(system, contact, state, point):
             point.arm_b[0], point.arm_b[1], point.arm_b[2] = r
     point.gap = contact.side * value(system, of_stop, state) - contact.offset
     point.motion = MOTION_THREE if has_metric(system) else MOTION_STOP
-    point.length, point.coordinate = contact.side, contact.solid
+    point.length, point.coordinate, point.grip = contact.side, contact.solid, 1.0
+    if contact.other_solid > 0:
+        point.motion = MOTION_THREE
+        point.grip = grip(system, wrap_of(system, contact), state)
     point.moves = 0
 
 
@@ -92,9 +102,12 @@ def drift(system, contact, feature, point, state, work) -> tuple[float, float, f
         return face_drift(system, c, state)
     out, k = work.joint[0].target, contact.solid
     n = contact.side * rate_of_slope(system, c, state, out)
-    if not has_metric(system):
+    if point.motion != MOTION_THREE:
         return n, 0.0, 0.0
-    t1 = rate_of_slope(system, system.relations.coordinates[k + 1], state, out)
+    slip = system.relations.coordinates[k + 1]
+    t1 = point.grip * rate_of_slope(system, slip, state, out)
+    if contact.other_solid > 0:
+        t1 += grip_rate(system, wrap_of(system, contact), state) * rate(system, slip, state)
     return n, t1, rate_of_slope(system, system.relations.coordinates[k + 2], state, out)
 
 

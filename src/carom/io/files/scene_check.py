@@ -19,7 +19,7 @@ from carom import checks
 from carom.scene import bodies, contacts, forces, joints, stops
 from carom.scene.belts import BeltRelation, BeltStretch
 from carom.scene.constraints import CONSTRAINTS, Constraint, Coupling, Gear
-from carom.scene.coordinates import Combination, Length, kind_of
+from carom.scene.coordinates import Combination, Length, Wrap, kind_of
 from carom.scene.curves import Curve, Spline
 from carom.scene.materials import Material
 from carom.scene.pieces import Piece, Shape
@@ -142,6 +142,31 @@ def _check_belt(record: BeltStretch | BeltRelation) -> None:
     if isinstance(record, BeltRelation):
         checks.number("tension", record.tension, least=0.0)
         checks.number("start", record.start)
+
+
+def _check_wrap(record: Wrap) -> None:
+    """Raise for a rope whose fields do not fit each other."""
+    if not isinstance(record.terms, tuple) or not record.terms:
+        raise ValueError(f"terms must be a tuple of at least one, got {record.terms!r}")
+    for joint, coordinate, factor in record.terms:
+        kind_of(joint, coordinate)
+        checks.number("factor", factor)
+    count = len(record.terms)
+    if not isinstance(record.slip, tuple) or len(record.slip) != count:
+        raise ValueError(f"slip must be {count} numbers, got {record.slip!r}")
+    if not all(isinstance(one, tuple) and len(one) == 2 for one in (record.strands, record.angles)):
+        raise ValueError(
+            f"strands and angles must be two each, got {record.strands!r}, {record.angles!r}"
+        )
+    for one in (*record.slip, *record.angles):
+        checks.number("each of slip and angles", one)
+    for one in record.strands:
+        if checks.integer("each of strands", one, least=-1) >= count:
+            raise ValueError(f"strands must be below {count}, got {record.strands!r}")
+    if record.way not in (-1, 1):
+        raise ValueError(f"way must be 1 or -1, got {record.way!r}")
+    checks.number("arc", record.arc, least=0.0)
+    checks.number("friction", record.friction, above=0.0)
 
 
 @cache
@@ -316,4 +341,5 @@ _LOOKS = {
     Profile: _check_profile, Curve: _check_curve, Spline: _check_curve, Surface: _check_surface,
     **dict.fromkeys((Combination, Coupling, Gear), _check_combination),
     **dict.fromkeys((BeltStretch, BeltRelation), _check_belt),
+    Wrap: _check_wrap,
 }  # fmt: skip

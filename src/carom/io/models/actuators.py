@@ -10,7 +10,7 @@ from carom.io.models.build import Build
 from carom.io.models.links import called, name_of
 from carom.io.models.report import need_mujoco
 from carom.io.models.state import is_off
-from carom.io.models.tendons import Terms
+from carom.io.models.tendons import Tendon
 from carom.results.robot import Coordinate, Motor
 from carom.scene import forces
 
@@ -23,24 +23,36 @@ TRANSMISSIONS = {
 }
 
 
-def add_actuators(build: Build, tendons: dict[int, Terms]) -> list[Motor]:
-    """Add all actuators that act on hinges, slides and fixed tendons by an affine law; report the others.
+def add_actuators(build: Build, tendons: dict[int, Tendon]) -> list[Motor]:
+    """Add all actuators that act on hinges, slides and tendons by an affine law; report the others.
 
-    `tendons` has the coordinates along which they pull each tendon.
+    `tendons` has along what they pull each tendon.
     """
     out = []
     for a in range(getattr(build.model, "nactuator", build.model.nu)):
-        name = name_of(build.model, "actuator", a)
-        terms, why = _terms(build, a, tendons)
+        name, gear = name_of(build.model, "actuator", a), float(build.model.actuator_gear[a, 0])
+        pulled, why = _pulled(build, a, tendons)
+        terms = [(c, gear * factor) for c, factor in pulled.terms]
         law, reason = _law(build, a)
         if why or reason:
             build.report.add(called(build.model, "actuator", a), why or reason, NO_FORCE)
             out.append(Motor(name, (), tuple(terms)))
             continue
-        parts = tuple(_part(build, a, name, *one, law) for one in terms)
-        out.append(Motor(name, parts, tuple(terms), law["force_range"]))
+        if pulled.along is None:
+            part = _part(build, a, name, *terms[0], law)
+        else:
+            part = _along(build, name, pulled, gear, law)
+        start = gear * pulled.start if pulled.along is not None and not terms else 0.0
+        out.append(Motor(name, (part,), tuple(terms), law["force_range"], start))
         _rotor(build, a, terms)
     return out
+
+
+def _along(build: Build, name: str, tendon: Tendon, gear: float, law: dict[str, Any]):
+    """Add the force along a tendon of several joints, or along a path."""
+    bias = law["bias"] + [law["bias"][1] * gear * tendon.start, 0.0, 0.0]
+    made = forces.Actuator(tendon.along, **{**law, "bias": bias}, gear=gear)
+    return build.scene.add_force(made, name=build.names.new(name, "actuator"))
 
 
 def _part(build: Build, a: int, name: str, c: Coordinate, factor: float, law: dict[str, Any]):
@@ -55,27 +67,20 @@ def _part(build: Build, a: int, name: str, c: Coordinate, factor: float, law: di
     return build.scene.add_force(made, name=build.names.new(name, "actuator"))
 
 
-def _terms(
-    build: Build, a: int, tendons: dict[int, Terms]
-) -> tuple[list[tuple[Coordinate, float]], str]:
-    """Return the coordinates on which an actuator acts with their factors, and why it cannot."""
+def _pulled(build: Build, a: int, tendons: dict[int, Tendon]) -> tuple[Tendon, str]:
+    """Return along what an actuator acts, and why it cannot."""
     m, kinds = build.model, need_mujoco().mjtTrn
-    kind, target, gear = (
-        int(m.actuator_trntype[a]),
-        int(m.actuator_trnid[a, 0]),
-        float(m.actuator_gear[a, 0]),
-    )
+    kind, target = int(m.actuator_trntype[a]), int(m.actuator_trnid[a, 0])
     if kind in (kinds.mjTRN_JOINT, kinds.mjTRN_JOINTINPARENT):
         if target in build.coordinates:
-            return [(build.coordinates[target], gear)], ""
-        return [], "it acts on a ball or free joint"
+            return Tendon([(build.coordinates[target], 1.0)]), ""
+        return Tendon([]), "it acts on a ball or free joint"
     if kind == kinds.mjTRN_TENDON:
-        terms = tendons.get(target)
-        if terms is None:
-            return [], "its tendon is not along coordinates of joints"
-        return [(c, gear * factor) for c, factor in terms], ""
+        if target in tendons:
+            return tendons[target], ""
+        return Tendon([]), "its tendon is not represented"
     names = {getattr(kinds, f"mjTRN_{key}", None): what for key, what in TRANSMISSIONS.items()}
-    return [], f"it acts on {names.get(kind, 'something unknown')}"
+    return Tendon([]), f"it acts on {names.get(kind, 'something unknown')}"
 
 
 def _law(build: Build, a: int) -> tuple[dict[str, Any], str]:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from typing import Any, cast
+from typing import Any, NamedTuple, cast
 
 import numpy as np
 
@@ -81,19 +81,31 @@ def _stops(build: Build, j: int, c: Coordinate, restitution: float, law: str) ->
         add_stops(build, c, name, what, build.model.jnt_range[j], restitution, law)
 
 
+class Limited(NamedTuple):
+    """What limits act on, ``start + sign * coordinate of the scene``: a `Coordinate`, or a sum."""
+
+    joint: Any
+    start: float
+    now: float  #: value of the sum at the start
+    index: int = 0
+    sign: float = 1.0
+
+
 def add_stops(
-    build: Build, c: Coordinate, name: str, what: str, ends, restitution: float, law: str
+    build: Build, c: Coordinate | Limited, name: str, what: str, ends, restitution: float, law: str
 ) -> None:
     """Add both limits of a coordinate; a limit that the start exceeds is moved to the start."""
-    ends = ends - c.start
+    ends, now = ends - c.start, c.now if isinstance(c, Limited) else 0.0
     for end, side, word in ((float(ends[0]), 1.0, "lower"), (float(ends[1]), -1.0, "upper")):
-        if side * end > 0.0:
+        if math.isinf(end):
+            continue
+        if side * (end - now) > 0.0:
             build.report.add(
                 what,
-                f"starts beyond its {word} limit, by {side * end:.3g}",
+                f"starts beyond its {word} limit, by {side * (end - now):.3g}",
                 "the limit is moved to the start",
             )
-            end = 0.0
+            end = now
         which = "lower" if side * c.sign > 0.0 else "upper"
         limit: Any = {which: c.sign * end}
         stop = build.scene.add_stop(

@@ -1,4 +1,4 @@
-"""Equality constraints of a model: points connected, bodies welded, joints coupled."""
+"""Equality constraints of a model: points connected, bodies welded, joints and fixed tendons coupled."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from carom.io.models.build import Build
 from carom.io.models.joints import in_body
 from carom.io.models.links import IDENTITY, called, name_of
 from carom.io.models.report import need_mujoco
+from carom.io.models.tendons import fixed_tendon
 from carom.scene import constraints, joints
 from carom.scene.bodies import Ground
 
@@ -31,8 +32,10 @@ def add_equalities(build: Build) -> None:
             _tie(build, e, what, joints.Fixed((0.0, 0.0, 0.0)), *_welded(build, e))
         elif kind == kinds.mjEQ_JOINT:
             _couple(build, e, what)
+        elif kind == kinds.mjEQ_TENDON:
+            _couple_tendons(build, e, what)
         else:
-            build.report.add(what, "is between tendons or deformable bodies", "left out")
+            build.report.add(what, "is between deformable bodies", "left out")
 
 
 def _sides(build: Build, e: int) -> tuple[int, int, list[Frame] | None]:
@@ -101,7 +104,7 @@ def _tie(build: Build, e: int, what: str, definition, first: int, second: int, o
 
 def _couple(build: Build, e: int, what: str) -> None:
     """Add q1 - q1_0 = a0 + a1 (q2 - q2_0); a polynomial of higher degree has no equivalent."""
-    model, data = build.model, build.data
+    model = build.model
     first, second = int(model.eq_obj1id[e]), int(model.eq_obj2id[e])
     a = model.eq_data[e][:5]
     if second >= 0 and np.any(a[2:]):
@@ -110,12 +113,42 @@ def _couple(build: Build, e: int, what: str) -> None:
     if not {first, second} - {-1} <= build.coordinates.keys():
         build.report.add(what, "is for a joint that is not a hinge or slide", "left out")
         return
-    missing, factors = -a[0], {}
-    for j, factor in ((first, 1.0), (second, -a[1])):
-        if j >= 0 and factor != 0.0:
-            c, place = build.coordinates[j], model.jnt_qposadr[j]
-            missing += factor * (data.qpos[place] - model.qpos0[place])
-            factors[c.joint, c.index] = factor * c.sign
+    sides = [
+        ([(build.coordinates[j], 1.0)], factor)
+        for j, factor in ((first, 1.0), (second, -a[1]))
+        if j >= 0 and factor != 0.0
+    ]
+    _relate(build, e, what, sides, -a[0])
+
+
+def _couple_tendons(build: Build, e: int, what: str) -> None:
+    """Add the same of the lengths of two fixed tendons, or of one."""
+    model = build.model
+    first, second = int(model.eq_obj1id[e]), int(model.eq_obj2id[e])
+    a = model.eq_data[e][:5]
+    if second >= 0 and np.any(a[2:]):
+        build.report.add(what, "is a polynomial of degree 2 or more", "left out")
+        return
+    sides = []
+    for tendon, factor in ((first, 1.0), (second, -a[1])):
+        if tendon >= 0 and factor != 0.0:
+            terms = fixed_tendon(build, tendon)
+            if terms is None:
+                build.report.add(what, "is for a tendon along a path", "left out")
+                return
+            sides.append((terms, factor))
+    _relate(build, e, what, sides, -a[0])
+
+
+def _relate(build: Build, e: int, what: str, sides, missing: float) -> None:
+    """Add a relation of sums of coordinates, each times a factor; by `missing` it does not hold in `qpos0`."""
+    model, data, factors = build.model, build.data, {}
+    for terms, factor in sides:
+        for c, own in terms:
+            missing += factor * own * (data.qpos[c.position] - model.qpos0[c.position])
+            key = c.joint, c.index
+            factors[key] = factors.get(key, 0.0) + factor * own * c.sign
+    factors = {key: factor for key, factor in factors.items() if factor != 0.0}
     if abs(missing) > FITS:
         build.report.add(
             what, f"does not hold at the start, by {missing:.3g}", "keeps its value at the start"

@@ -1,27 +1,36 @@
-"""Fixed tendons: springs, dampers, limits and friction of a linear combination of joint coordinates.
+"""Tendons: springs, dampers, limits, friction and motors along sums of joint coordinates, or of distances.
 
-What acts on one joint acts along its coordinate. For several a link without weight to speak of slides by the
-length of the tendon, which a `Coupling` with the joints prescribes, and springs, stops, friction and motors act
-on this slide.
+A fixed tendon is a sum of coordinates of joints, one along a path a sum of the distances of its sites, with
+the divisors of its pulleys. What acts on one joint acts along its coordinate. A tendon of several joints with
+inertia of its own (armature) has a link without weight to speak of, which slides by its length.
 """
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
 from carom.io.models.build import Build
-from carom.io.models.coordinates import add_stops
+from carom.io.models.coordinates import Limited, add_stops
 from carom.io.models.links import called, name_of
 from carom.io.models.report import need_mujoco
 from carom.io.models.state import is_off
 from carom.results.robot import Coordinate
 from carom.scene import constraints, forces, joints
-from carom.scene.bodies import GROUND
+from carom.scene.bodies import GROUND, Ground
+from carom.scene.coordinates import Combination, Strand
 from carom.scene.joints import Joint
 
 Terms = list[tuple[Coordinate, float]]
-#: what acts along a tendon, in the arrays of a model
-ACTING = ("stiffness", "damping", "limited", "frictionloss", "armature")
+
+
+class Tendon(NamedTuple):
+    """What actuators pull: coordinates with their factors, or a sum, whose length is `start` where it is 0."""
+
+    terms: Terms
+    along: Combination | None = None
+    start: float = 0.0
 
 
 def fixed_tendon(build: Build, tendon: int) -> Terms | None:
@@ -42,37 +51,80 @@ def _joints(m, tendon: int) -> list[tuple[int, float]]:
 
 
 def needs_link(m, tendon: int) -> bool:
-    """Return whether something acts along a tendon of several joints that is no constant force."""
-    if len(_joints(m, tendon)) < 2:
-        return False
-    on = (m.actuator_trntype == need_mujoco().mjtTrn.mjTRN_TENDON) & (
-        m.actuator_trnid[:, 0] == tendon
-    )
-    on &= m.actuator_dyntype == need_mujoco().mjtDyn.mjDYN_NONE  # others exert no force
-    bends = bool(np.any(m.actuator_biasprm[on, 1:3])) and not is_off(m, "ACTUATION")
-    return bends or any(_value(m, what, tendon) > 0.0 for what in ACTING)
+    """Return whether a tendon of several joints has inertia."""
+    return len(_joints(m, tendon)) > 1 and _value(m, "armature", tendon) > 0.0
 
 
 def _value(m, what: str, tendon: int) -> float:
     return float(getattr(m, f"tendon_{what}", np.zeros(tendon + 1))[tendon])
 
 
-def add_tendons(build: Build, restitution: float, impact_law: str) -> dict[int, Terms]:
-    """Add what acts along fixed tendons; return along which coordinates actuators pull them."""
-    out: dict[int, Terms] = {}
+def add_tendons(build: Build, restitution: float, impact_law: str) -> dict[int, Tendon]:
+    """Add what acts along tendons; return along what actuators pull them."""
+    out: dict[int, Tendon] = {}
     for t in range(build.model.ntendon):
-        terms, what = fixed_tendon(build, t), called(build.model, "tendon", t)
+        terms = fixed_tendon(build, t)
         if terms is None:
-            build.report.add(what, "is not along coordinates of hinges and slides", "left out")
-            continue
-        out[t] = (
-            terms
-            if len(terms) == 1 or not needs_link(build.model, t)
-            else [(_link(build, t, terms), 1.0)]
-        )
-        if len(out[t]) == 1:
-            _act(build, t, *out[t][0], restitution, impact_law)
+            made = _along_path(build, t)
+            if made is None:
+                continue
+        elif len(terms) == 1:
+            made = Tendon(terms)
+        elif needs_link(build.model, t):
+            made = Tendon([(_link(build, t, terms), 1.0)])
+        else:
+            made = Tendon(terms, _sum(terms), sum(factor * c.start for c, factor in terms))
+        out[t] = made
+        if made.along is None:
+            (c, factor), *_ = made.terms
+            _act(build, t, c, factor, restitution, impact_law)
+        else:
+            _act_along(build, t, made.along, made.start, (restitution, impact_law))
     return out
+
+
+def _sum(terms: Terms, factor: float = 1.0) -> Combination:
+    """Return a sum of coordinates, in the scene."""
+    found: dict[tuple[Joint, int], float] = {}
+    for c, own in terms:
+        key = c.joint, c.index
+        found[key] = found.get(key, 0.0) + factor * own * c.sign
+    return Combination._of((joint, k, own) for (joint, k), own in found.items() if own != 0.0)
+
+
+def _along_path(build: Build, t: int) -> Tendon | None:
+    """Return the sum of the distances of the sites of a tendon; None with an entry in the report."""
+    m, kinds, what = build.model, need_mujoco().mjtWrap, called(build.model, "tendon", t)
+    first, constant, terms, last, divisor = int(m.tendon_adr[t]), 0.0, [], None, 1.0
+    for w in range(first, first + int(m.tendon_num[t])):
+        kind, number = m.wrap_type[w], int(m.wrap_objid[w])
+        if kind == kinds.mjWRAP_PULLEY:
+            divisor, last = float(m.wrap_prm[w]), None
+        elif kind != kinds.mjWRAP_SITE:
+            reason = "goes round a geom"
+            if kind == kinds.mjWRAP_JOINT:
+                reason = "is not along coordinates of hinges and slides"
+            build.report.add(what, reason, "left out")
+            return None
+        else:
+            here = build.carrier(int(m.site_bodyid[number])), build.data.site_xpos[number].copy()
+            if last is not None and last[0] is here[0]:
+                constant += float(np.linalg.norm(here[1] - last[1])) / divisor
+            elif last is not None:
+                terms.append((_strand(last, here), 0, 1.0 / divisor))
+            last = here
+    if not terms:
+        build.report.add(what, "has a length that does not change", "left out")
+        return None
+    if _value(m, "armature", t) > 0.0:
+        build.report.add(what, "armature of a tendon along a path", "left out")
+    return Tendon([], Combination._of(terms), constant)
+
+
+def _strand(one, two) -> Strand:
+    """Return the distance of two points of bodies, of which the second is not the ground."""
+    (a, p), (b, q) = (two, one) if isinstance(two[0], Ground) else (one, two)
+    return Strand(a, b, p, q, np.zeros(3), np.zeros(2), float(np.linalg.norm(q - p)))
 
 
 def _link(build: Build, t: int, terms: Terms) -> Coordinate:
@@ -105,23 +157,72 @@ def _act(build: Build, t: int, c: Coordinate, factor: float, restitution: float,
     """Add what acts along a tendon of the length factor q."""
     m, names, square = build.model, build.names, factor * factor
     name, what = name_of(m, "tendon", t), called(m, "tendon", t)
-    stiffness = 0.0 if is_off(m, "SPRING", "PASSIVE") else _value(m, "stiffness", t)
-    damping = 0.0 if is_off(m, "DAMPER", "PASSIVE") else _value(m, "damping", t)
-    low, high = np.broadcast_to(m.tendon_lengthspring[t], 2)
+    stiffness, damping, low, high = _spring(m, t)
     if stiffness > 0.0 and low != high:
-        build.report.add(what, "a spring with a dead band", "without this spring")
+        _dead_band(build, t, _sum([(c, factor)]), factor * c.start, (stiffness, low, high))
         stiffness = 0.0
     if stiffness + damping > 0.0:
-        rest = c.sign * (float(low) / factor - c.start) if stiffness else 0.0
+        rest = c.sign * (low / factor - c.start) if stiffness else 0.0
         spring = forces.JointSpring(c.joint, stiffness * square, damping * square, rest, c.index)
         build.scene.add_force(spring, name=names.new(f"{name}:spring", "force"))
-    if _value(m, "frictionloss", t) > 0.0 and not is_off(m, "CONSTRAINT", "FRICTIONLOSS"):
-        friction = forces.JointFriction(
-            c.joint, _value(m, "frictionloss", t) * abs(factor), c.index
-        )
+    bound = _friction(m, t)
+    if bound > 0.0:
+        friction = forces.JointFriction(c.joint, bound * abs(factor), c.index)
         build.scene.add_force(friction, name=names.new(f"{name}:friction", "force"))
     if _value(m, "armature", t) > 0.0:
         rotor = forces.JointInertia(c.joint, _value(m, "armature", t) * square, c.index)
         build.scene.add_force(rotor, name=names.new(f"{name}:armature", "force"))
-    if m.tendon_limited[t] and not is_off(m, "CONSTRAINT", "LIMIT"):
+    if _is_limited(m, t):
         add_stops(build, c, name, what, np.sort(m.tendon_range[t] / factor), restitution, law)
+
+
+def _act_along(build: Build, t: int, of: Combination, start: float, law: tuple[float, str]) -> None:
+    """Add what acts along a tendon of the length `start` and that of a sum."""
+    m, names = build.model, build.names
+    name, what = name_of(m, "tendon", t), called(m, "tendon", t)
+    stiffness, damping, low, high = _spring(m, t)
+    if stiffness > 0.0 and low != high:
+        _dead_band(build, t, of, start, (stiffness, low, high))
+        stiffness = 0.0
+    if stiffness + damping > 0.0:
+        spring = forces.JointSpring(of, stiffness, damping, low - start if stiffness else 0.0)
+        build.scene.add_force(spring, name=names.new(f"{name}:spring", "force"))
+    bound = _friction(m, t)
+    if bound > 0.0:
+        friction = forces.JointFriction(of, bound)
+        build.scene.add_force(friction, name=names.new(f"{name}:friction", "force"))
+    if _is_limited(m, t):
+        ends = m.tendon_range[t].copy()
+        # of coordinates of joints 0; distances are not below 0
+        now = sum(factor * one.start for one, _, factor in of.terms if isinstance(one, Strand))
+        if now > 0.0:
+            ends[0] = ends[0] if ends[0] > 0.0 else -np.inf
+        add_stops(build, Limited(of, start, now), name, what, ends, *law)
+
+
+def _dead_band(build: Build, t: int, of: Combination, start: float, spring) -> None:
+    """Add springs that act beyond the lengths `low` and `high` of a tendon alone."""
+    stiffness, low, high = spring
+    name = name_of(build.model, "tendon", t)
+    less = Combination._of((joint, k, -factor) for joint, k, factor in of.terms)
+    for along, end in ((of, high - start), (less, start - low)):
+        if not isinstance(of.joints[0], Joint) and along is less and low <= 0.0:
+            continue
+        pulls = forces.BeltStrand(along, -stiffness * end, stiffness)
+        build.scene.add_force(pulls, name=build.names.new(f"{name}:spring", "force"))
+
+
+def _spring(m, t: int) -> tuple[float, float, float, float]:
+    """Return stiffness and damping of a tendon, and the lengths between which its spring does not act."""
+    stiffness = 0.0 if is_off(m, "SPRING", "PASSIVE") else _value(m, "stiffness", t)
+    damping = 0.0 if is_off(m, "DAMPER", "PASSIVE") else _value(m, "damping", t)
+    low, high = np.broadcast_to(m.tendon_lengthspring[t], 2)
+    return stiffness, damping, float(low), float(high)
+
+
+def _friction(m, t: int) -> float:
+    return 0.0 if is_off(m, "CONSTRAINT", "FRICTIONLOSS") else _value(m, "frictionloss", t)
+
+
+def _is_limited(m, t: int) -> bool:
+    return bool(m.tendon_limited[t]) and not is_off(m, "CONSTRAINT", "LIMIT")

@@ -40,6 +40,24 @@ def strand(c, state):
 
 
 @kernel
+def angle_of(system, c, begin, state):
+    """Return the angle of the strand, with the turns of its value; with no such those nearest to `begin`."""
+    length, x, y = strand(c, state)
+    if c.length != 0.0:
+        return (value(system, c, state) - length) / c.length
+    angle = math.atan2(y, x)
+    return angle + TURN * math.floor((begin - angle) / TURN + 0.5)
+
+
+@kernel
+def turning_of(c, state):
+    """Return the rate of this angle."""
+    length, x, y = strand(c, state)
+    u, v = in_plane(c, anchor_speed(c, state))
+    return (x * v - y * u) / length if length > 0.0 else 0.0
+
+
+@kernel
 def slides(c):
     """Return True."""
     return True

@@ -9,8 +9,7 @@ import numpy as np
 
 from carom import arguments
 from carom.results.names import UNITS
-from carom.scene.coordinates import kind_of, terms_of
-from carom.scene.joints import Joint
+from carom.scene.coordinates import Length, kind_of, terms_of
 
 if TYPE_CHECKING:
     from carom.results.named import Source
@@ -75,13 +74,15 @@ class AlongCoordinate(ABC):
     def _coordinate(self, which: int):
         if self._along is None:
             raise AttributeError(f"{self.name!r} acts along no coordinate of a joint")
-        read = self._source.joint_coordinates
+        source, read = self._source, self._source.joint_coordinates
         terms = terms_of(self._along.joint, self._along.coordinate)
-        found = [  # displacements of the centres of wheels are 0
-            factor * read(joint)[which][..., k]
-            for joint, k, factor in terms
-            if isinstance(joint, Joint)
-        ]
+        if any(isinstance(one, Length) for one, _, _ in terms):
+            motion = source._reports.motion(
+                self._along.joint, source._saved, self._along.coordinate
+            )
+            found = motion.value if which == 0 else motion.rate
+            return np.reshape(found, np.shape(source.t))[()]
+        found = [factor * read(joint)[which][..., k] for joint, k, factor in terms]
         return np.sum(found, axis=0)[()]
 
     @property

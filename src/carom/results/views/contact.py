@@ -12,7 +12,7 @@ from carom.results.views.common import View
 from carom.scene.belts import BeltStretch
 from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.contacts import gap_between
-from carom.scene.coordinates import Length, Strand, terms_of
+from carom.scene.coordinates import Length, Strand, Wrap, terms_of
 from carom.scene.stops import RailContact, Stop
 
 if TYPE_CHECKING:
@@ -74,9 +74,15 @@ class ContactView(View):
 
     @property
     def tension(self):
-        """Tension of a tether, a rope, or a strand of a belt [N], (T,): 0 while it is slack."""
+        """Tension of a tether, a rope, or a strand of a belt [N], (T,): 0 while it is slack.
+
+        Of a rope that rubs on a guide: (T, 2), before the guide and behind it.
+        """
         if not _is_cord(self._part):
             raise AttributeError(f"{self.name!r} has no tension: it is no tether, rope or belt")
+        if isinstance(getattr(self._part, "joint", None), Wrap):
+            half = 0.5 * self.force[..., 1]
+            return self.force[..., 0, None] + np.stack([half, -half], axis=-1)
         return self.force[..., 0]
 
     @property
