@@ -38,7 +38,7 @@ def test_project_puts_in_the_work_of_the_return():
     # the free parabola of the step gives the penetration
     x, v = a.position[hits - 1, 0, 2] - 0.1, a.velocity[hits - 1, 0, 2]
     depth = -(x + v * 0.01 - 0.5 * G * 0.01**2)
-    assert np.all(depth > 0)
+    assert np.all(depth > -1e-15)  # what has arrived at the end of a step strikes there
     np.testing.assert_allclose(jumps[hits - 1], G * depth, rtol=0, atol=1e-12)
     assert energy[-1] > 0.01 * a.total_energy[0]
 
