@@ -15,7 +15,7 @@ import builtins, gc, json, sys
 counts = dict.fromkeys(("compile", "exec"), 0)
 def counted(name, real):
     def call(source, *rest, **more):
-        counts[name] += isinstance(source, (str, bytes))
+        counts[name] += isinstance(source, str)
         return real(source, *rest, **more)
     return call
 for name in counts:

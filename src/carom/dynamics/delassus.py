@@ -62,6 +62,7 @@ def inverse_masses(system, k, points, state, work, W):
         return
     still_all(k, points, work)
     for j in range(k):
+        free = alone(system, points[j])
         for r in range(3):
             m = 3 * j + r
             if not acts(points[j].motion, r):
@@ -70,10 +71,13 @@ def inverse_masses(system, k, points, state, work, W):
                 continue
             spread(system, points[j], state, unit_vector(r), work)
             for i in range(k):
+                if free and no_body_of(points[i], points[j]):
+                    W[3 * i, m], W[3 * i + 1, m], W[3 * i + 2, m] = 0.0, 0.0, 0.0
+                    continue
                 W[3 * i, m], W[3 * i + 1, m], W[3 * i + 2, m] = contact_motion(
                     system, points[i], state, work
                 )
-        if alone(system, points[j]):
+        if free:
             still_ends(points[j], work)
         else:  # all joined bodies have a motion, not only those of the point
             still_all(k, points, work)
@@ -86,6 +90,14 @@ def inverse_masses(system, k, points, state, work, W):
         if points[i].motion in (MOTION_STOP, MOTION_THREE):
             for m in (3 * i + 1, 3 * i + 2):
                 W[m, m] = W[m, m] if W[m, m] > 0.0 else W[3 * i, 3 * i]
+
+
+@kernel
+def no_body_of(point, other):
+    """Return whether a point, which is none of joints, has no body that the other has."""
+    if point.motion > MOTION_PIVOT or point.a in (other.a, other.b):
+        return False
+    return point.b < 0 or point.b not in (other.a, other.b)
 
 
 @kernel

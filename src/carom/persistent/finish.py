@@ -23,7 +23,13 @@ from carom.persistent.active_set import clear
 from carom.persistent.adhesion import pulled
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.jam import jams_among
-from carom.persistent.joint_rows import greatest_load, place_drives, radius_of, still_speed
+from carom.persistent.joint_rows import (
+    greatest_load,
+    place_drives,
+    push_in,
+    radius_of,
+    still_speed,
+)
 from carom.persistent.margins import (
     greatest_push,
     set_grip,
@@ -308,6 +314,8 @@ def solve_end(model, data, label, k, s, h):
 def rest_of(model, data, k, h):
     """Return the speed below which the bodies of k points are at rest at the end of a step of length h."""
     push = greatest_load(k, data.group)
+    for i in range(k):
+        push = push_in(i, push, data.group)
     return rest_speed(model.controls, h * push, data.work.search[0].residual, k, FEW_REST)
 
 

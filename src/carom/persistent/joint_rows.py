@@ -79,14 +79,17 @@ def place_coordinate(system, i, t, point):
 
 
 @kernel
-def still_speed(i, push, controls, group):
-    """Return the speed of slip of entry i that is round-off: a part of what accelerates its points in a step.
-
-    A joint that only its own friction acts on is slowed down by that, and by nothing else.
-    """
+def push_in(i, push, group):
+    """Return `push`, or the acceleration of entry i by its own friction: in a joint nothing else may act."""
     if group.closed[i].motion == MOTION_JOINT:
-        push = max(push, group.problem.mu[i] * group.problem.W[3 * i + 1, 3 * i + 1])
-    return controls.rest * push * controls.step
+        return max(push, group.problem.mu[i] * group.problem.W[3 * i + 1, 3 * i + 1])
+    return push
+
+
+@kernel
+def still_speed(i, push, controls, group):
+    """Return the speed of slip of entry i that is round-off: a part of what accelerates it in a step."""
+    return controls.rest * push_in(i, push, group) * controls.step
 
 
 @kernel
