@@ -340,7 +340,7 @@ def test_a_geneva_wheel_follows_its_pin():
     within = (turn > math.radians(-38)) & (turn < math.radians(42))
     np.testing.assert_allclose(s["axle"].coordinate[within], angle[within], atol=1e-8)
     assert abs(s["axle"].coordinate[-1] - 0.5 * math.pi) < 0.01
-    assert s["axle"].rate[-1] == 0.0
+    assert abs(s["axle"].rate[-1]) < 1e-60
 
 
 @pytest.mark.parametrize("way", [-1.0, 1.0])
