@@ -10,18 +10,14 @@ import numpy as np
 from carom._compiled.template import Template, arrays_of
 from carom._compiled.units import Entries
 from carom._compiled.user_functions import Functions
-from carom.contact.depth import write_least_gaps
 from carom.dynamics.adapt import complete, time_of_bounces
 from carom.dynamics.methods import EXPLICIT, METHODS, make_method
 from carom.dynamics.project import project_start
-from carom.dynamics.reactions import start_errors, start_speeds
 from carom.dynamics.thresholds import FIRST_STEP
 from carom.geometry.frames import length
 from carom.impact.multiple.layout import multiple_settings
 from carom.impact.workspace import new_group, new_multiple, no_multiple
-from carom.kinematics.thresholds import END_MARGIN
 from carom.model import records as r
-from carom.model.arrays import ON_CURVE
 from carom.model.compile import Compiled, compiled_once, uses_functions, with_pairs
 from carom.model.controls import LOCATE, PROJECT, WORK, Controls
 from carom.model.data import Data, Model
@@ -29,20 +25,18 @@ from carom.model.kept import Snapshot
 from carom.model.method import IMPLICIT, THREE_FIELD
 from carom.model.switched import NOTHING_SWITCHED, Stands, first_stand, go_on_from, stands_of
 from carom.model.user_results import check_results
-from carom.options import Options
 from carom.results.accuracy import inaccurate
 from carom.results.costs import costs
 from carom.results.solution import Solution
 from carom.results.state import SystemState
 from carom.scene.all_pairs import PairTable
-from carom.scene.joints import Joint
 from carom.scene.more_forces import has_kinks
 from carom.scene.scene import Scene
-from carom.scene.switches import is_off
 from carom.status import Status
 from carom.stepping import record, time_loop
 from carom.stepping.crowd.layout import SPOTS, new_crowd, no_crowd, roomier_crowd
 from carom.stepping.energy_balance import new_watch
+from carom.stepping.first_state import check_joints, check_stops
 from carom.stepping.grid import (
     Grid,
     cut_grid,
@@ -219,7 +213,7 @@ class Run:
     def check(self, scene: Scene) -> None:
         """Check the initial state."""
         initial = scene, self.compiled, self.now, self.work, self.options
-        check_start(*initial)
+        check_joints(*initial)
         check_stops(*initial)
 
     @property
@@ -450,81 +444,3 @@ class Run:
                 self.records = r.with_room(self.records, clock.saved)
                 self.save_now()
         return Solution._from_run(self, status, **watched)
-
-
-def check_stops(scene: Scene, compiled, start, work, options: Options) -> None:
-    """Refuse a joint that exceeds its stop at the start."""
-    stops = [stop for stop in scene.stops if not is_off(scene, stop)]
-    if not stops or scene._chart is not None:  # in coordinates gaps have sizes of their own
-        return
-    system = compiled.system
-    gaps, first = np.zeros(len(stops)), len(system.contacts) - len(stops)
-    write_least_gaps(system, start, first, work, gaps)
-    for row, (stop, gap) in enumerate(zip(stops, gaps), start=first):
-        extent = system.contacts.extent[row]
-        if not gap >= -options.constraint_tolerance * extent:
-            if stop.joint.can_be_left:
-                raise ValueError(
-                    f"position violates {stop.joint.name!r}: its point must be on the free side of the rail, "
-                    f"got a gap of {gap:g} m"
-                )
-            side = "lower" if stop.side > 0.0 else "upper"
-            unit = "rad" if stop.turns else "m"
-            place = round(stop.end + gap / system.contacts.side[row], 9)
-            raise ValueError(
-                f"stop {stop.name!r} of {stop.joint.name!r} must not be exceeded at the start, where the "
-                f"coordinate is {place + 0.0:g}, got {side}={stop.end:g} {unit}"
-            )
-
-
-def check_ends(scene: Scene, compiled) -> None:
-    """Refuse a point beyond an end of its curve, which is open, at the start."""
-    relations = compiled.system.relations
-    for (j, _), k in compiled.numbers.items():
-        c = relations.coordinates[k]
-        if c.kind not in ON_CURVE:
-            continue
-        one, s = relations.curves[c.number], float(relations.memory.coordinates[k].reference)
-        margin = END_MARGIN * (one.high - one.low)
-        if one.period == 0.0 and not one.low - margin <= s <= one.high + margin:
-            raise ValueError(
-                f"position violates {scene.joints[j].name!r}: its point must be on the curve, between "
-                f"{one.low:g} m and {one.high:g} m from the anchor, got {s:g} m"
-            )
-
-
-def check_start(scene: Scene, compiled, start, work, options: Options) -> None:
-    """Refuse an initial state that violates a joint or a constraint; the message has its name and error."""
-    system, elements = compiled.system, (*scene.joints, *scene.constraints)
-    if not elements:
-        return
-    errors = np.zeros((2, len(system.joints), 6))
-    work.moment[0].time = 0.0
-    start_errors(system, start, work, *errors)
-    if compiled.functions.failed is not None:
-        raise compiled.functions.failed
-    check_ends(scene, compiled)
-    size = system.bodies.extent
-    speed = np.max(np.abs(start.v)) + np.max(np.abs(start.w) * size[:, None])
-    speed += np.max(np.abs(start_speeds(system, start, work)), initial=0.0)
-    for j, element in enumerate(elements):
-        # angular rows come after the linear ones where there are any: as a speed at the body's size
-        weight = max(1.0, size[system.joints.child[j]])
-        off, rate = (float(np.max(np.abs(e[j]))) for e in errors)
-        what = f"{element.name!r} ({element.kind})"
-        fits = "give an initial state that satisfies it, or use Options(project_start=True)"
-        if not off <= options.constraint_tolerance * weight:
-            raise ValueError(
-                f"position violates {what}: its error must be 0, got {off:.6g}; {fits}"
-            )
-        if rate * weight <= options.constraint_tolerance * speed + 1e-300:
-            continue
-        if isinstance(element, Joint):
-            raise ValueError(
-                f"velocity of {element.child.name!r} violates joint {what}: the velocity that the joint "
-                f"forbids must be 0, got {rate:.6g}; give velocity and angular_velocity of all joined "
-                "bodies that satisfy their joints, or use Options(project_start=True)"
-            )
-        raise ValueError(
-            f"velocity violates {what}: it differs from the prescribed value by {rate:.6g}; {fits}"
-        )
