@@ -26,7 +26,7 @@ from carom.model.actions import (
     EVENT_STOP,
     MODE_OPEN,
 )
-from carom.persistent.finish import check_end, note_modes, write_end
+from carom.persistent.finish import check_end, copy_to_stage, note_modes, write_end
 from carom.persistent.members import explicit_member, implicit_member
 from carom.persistent.return_to_surfaces import leave_undetermined
 from carom.persistent.rows import beyond_stop
@@ -159,7 +159,6 @@ def step_group(model, data, method, label, h):
         return applied, friction, CONSTRAINTS_LOST
     changes = order > 0 and (turned or opens(data, label))
     if changes:
-        leave_undetermined(model.system, data, ended, label)
         note_errors(model, data, method.closing_E, label, 0, h)
     for m in range(members(work, label, group.bodies.member)):
         miss, b = work.body[group.bodies.member[m]].miss, group.bodies.member[m]
@@ -180,7 +179,7 @@ def end_implicitly(model, data, method, label, h, powers):
     loads and of friction.
     """
     k, applied, friction = implicit_member(model, data, method, label, h, powers)
-    A, closes = method
+    (A, closes), member = method, data.group.bodies.member
     if k == 0:
         return 0, False, applied, friction
     if not closes:
@@ -190,6 +189,9 @@ def end_implicitly(model, data, method, label, h, powers):
     applied += driven
     if not joined:
         return 0, False, applied, friction
+    if closes and model.controls.order > 0:
+        leave_undetermined(model.system, data, k, label)
+        copy_to_stage(members(data.work, label, member), data.work.trial, data.group, data.work)
     _, driven, rubbed = check_end(model, data, label, A.shape[0], h, False)
     return k, turned, applied + driven, friction + rubbed
 

@@ -15,7 +15,7 @@ from carom.dynamics.explicit import copy_state, note_velocity
 from carom.dynamics.project import project_position, project_velocity
 from carom.dynamics.thresholds import ERROR_SHARE, JOINT_ERROR
 from carom.friction.layout import CONE, SLIDING
-from carom.geometry.thresholds import REMAINDER, RESOLUTION
+from carom.geometry.thresholds import REMAINDER, RESOLUTION, SUM_ERROR
 from carom.kinematics.moving_surfaces import set_surfaces
 from carom.model.actions import MODE_OPEN, MODE_SLIP, MODE_STICK
 from carom.model.workspace import CONSTANT, MOTION_JOINT, MOTION_POINT
@@ -123,7 +123,8 @@ def note_modes(model, data, k, h):
     push = greatest_load(k, group)
     for i in range(k):
         closed_point, u, p = group.closed[i], group.u, group.p
-        still = still_speed(i, push, controls, group)
+        _, b1, b2, began = slip_at_start(model.system, active, closed_point)
+        still = max(still_speed(i, push, controls, group), SUM_ERROR * began)
         slip = math.hypot(u[3 * i + 1], u[3 * i + 2])
         force = math.hypot(p[3 * i + 1], p[3 * i + 2])
         # of a point that does not press, round-off is no friction left
@@ -136,7 +137,6 @@ def note_modes(model, data, k, h):
             continue
         slides = group.problem.kind[i] == SLIDING and slip > 0.0
         d1, d2 = u[3 * i + 1] / slip if slides else 0.0, u[3 * i + 2] / slip if slides else 0.0
-        _, b1, b2, _ = slip_at_start(model.system, active, closed_point)
         turned = turned or (group.problem.mu[i] > 0.0 and math.hypot(d1 - b1, d2 - b2) > TURNED)
         store_slip(model.system, active, closed_point, d1, d2, slip if slides else 0.0)
         if not is_torque(closed_point) and group.problem.mu[i] > 0.0:

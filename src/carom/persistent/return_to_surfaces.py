@@ -149,12 +149,13 @@ def onto_tangents(system, data, k, count):
 
 @kernel
 def leave_undetermined(system, data, k, label):
-    """Write to stage 2 what forces have changed in a closing step that rows at its end do not determine.
+    """Write to stage 3 what forces have changed in a closing step that rows at its end do not determine.
 
     Stages 0 and 1 have the accelerations at its start and those that made the step. Where rows at the end bind
     all motion (a box whose slip stops on a floor), they give its velocity whatever friction has done in
     between. They do not where the last support opens, and at a dead centre: a corner of a face that falls flat
-    on one wall stops on another, and what slides on has other forces from then on.
+    on one wall stops on another, and what slides on has other forces from then on. The velocities in
+    `work.stage` are lost.
     """
     state, group, work = data.work.stage, data.group, data.work
     count = members(work, label, group.bodies.member)
@@ -179,7 +180,7 @@ def leave_undetermined(system, data, k, label):
     spread_all(system, group.points[0, :k], group.back, group.bodies.member[:count], state, work)
     for m in range(count):
         b = group.bodies.member[m]
-        left, first, second = work.stages[2, b], work.stages[0, b].rate, work.stages[1, b].rate
+        left, first, second = work.stages[3, b], work.stages[0, b].rate, work.stages[1, b].rate
         left.speed[:], left.turn[:] = 0.0, 0.0
         for r in range(6):
             left.rate[r] = second[r] - first[r] + work.body[b].motion[r]
