@@ -98,6 +98,21 @@ def test_laws_of_slip_and_of_speed():
     np.testing.assert_allclose(two.velocity_after[0], one.velocity_after, atol=1e-8)
 
 
+def test_wedged():
+    """W of a mechanism that moves one way only: with this friction no velocity has e above 0."""
+    row = np.array([-0.546222, 0.686425, -1.032717])
+    mu, e = 0.724458, 0.8
+    u = 0.649 * row
+    found = carom.resolve_impact(np.outer(row, row), u, mu, e, "moreau")
+    assert found.wedged
+    assert abs(found.velocity_after).max() < 1e-12
+    assert found.energy_change == pytest.approx(-0.5 * 0.649**2, rel=1e-12)
+    assert found.restitution_work == 0.0
+    several = carom.resolve_impacts(np.outer(row, row), [u], mu, e, "moreau")
+    assert several.plastic_change < 0.0
+    np.testing.assert_allclose(several.velocity_after[0], 0.0, atol=1e-9)
+
+
 def test_many_at_once_and_a_plane_one():
     mu = np.linspace(0, 1, 5)
     many = carom.resolve_impact(FACE[:2, :2], (-1.0, 0.2), mu, 0.5, ["moreau"] * 5)

@@ -26,20 +26,26 @@ BISECTIONS = 120
 
 @kernel
 def by_final_slip(m, u, mu, e, units, out):
-    """Solve one impact in scaled variables: W as its upper triangle; return a code."""
+    """Solve one impact in scaled variables: W as its upper triangle; return a code.
+
+    If W is singular friction may wedge the pair so that no velocity has this e: then e = 0.
+    """
     found, p, p1, p2 = solve_one(m, ((1.0 + e) * u[0], u[1], u[2]), mu)
-    if not (found and 0.0 < p < math.inf):
-        return o.NO_END
+    phases = 0
+    if not (found and 0.0 < p < math.inf):  # friction wedges the pair: no velocity has this e
+        found, p, p1, p2 = solve_one(m, u, mu)
+        phases = o.WEDGED
+        if not (found and 0.0 < p < math.inf):
+            return o.NO_END
     after = _after(m, u, (p, p1, p2))
     slip, size = math.sqrt(after[1] ** 2 + after[2] ** 2), abs(u[0]) + abs(u[1]) + abs(u[2])
-    phases = 0
     if slip > REMAINDER * size:
-        phases = o.PHASE_SLIP
+        phases |= o.PHASE_SLIP
     else:
         after = (after[0], 0.0, 0.0)
         if mu > 0.0:
-            phases = o.PHASE_STICK
-    _write(out, units, u, after, (p, p1, p2), e)
+            phases |= o.PHASE_STICK
+    _write(out, units, u, after, (p, p1, p2))
     out[o.PHASES] = phases
     return o.OK
 
@@ -55,10 +61,10 @@ def _after(m, u, P):
 
 
 @kernel
-def _write(out, units, u, after, P, e):
+def _write(out, units, u, after, P):
     """Write velocities, impulses and works, in the units of the caller."""
     v, one = units[0], units[0] / units[1]
-    work, loaded = v * one, 1.0 / (1.0 + e)
+    work, loaded = v * one, u[0] / (u[0] - max(0.0, after[0]))
     for i in range(3):
         out[o.VELOCITY + i] = after[i] * v
         out[o.IMPULSE + i] = P[i] * one
