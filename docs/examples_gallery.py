@@ -73,6 +73,7 @@ PLOTTED = {
     "trebuchet",
     "vibrating_table",
     "watch",
+    "woodpecker",
 }
 
 

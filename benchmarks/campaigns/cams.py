@@ -24,7 +24,7 @@ def case(seed: int) -> Case:
     law = {
         "restitution": float(rng.choice([0.0, 1.0, rng.uniform(0.0, 1.0)])),
         "friction": float(rng.choice([0.0, rng.uniform(0.0, 1.0)])),
-        "impact_law": str(rng.choice(carom.scene.contacts.IMPACT_LAWS)),
+        "impact_law": str(rng.choice(draw.LAWS)),
     }
     made = {"ratchet": _ratchet, "bumps": _bumps}.get(kind, _follower)
     pairs = made(scene, kind, law, rng)

@@ -95,8 +95,8 @@ def run(case: Case, tolerances: bool = False) -> Outcome:
         "bounces": s.ledger.bounces,
     }
     laws = [*case.scene.contacts, *filter(None, [getattr(case.scene, "contact_default", None)])]
-    if any(law.impact_law == "newton" and bound_of(law.friction) > 0.0 for law in laws):
-        del energies["impacts"]  # Newton's law may gain energy by itself
+    if any(law.impact_law in ("newton", "moreau") and bound_of(law.friction) > 0.0 for law in laws):
+        del energies["impacts"]  # these laws may gain energy by themselves
     return Outcome(
         status=s.status.name,
         reached=float(s.t[-1] / case.duration),

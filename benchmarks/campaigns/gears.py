@@ -24,7 +24,7 @@ def case(seed: int) -> Case:
     law = {
         "restitution": float(rng.choice([0.0, 0.0, 1.0, rng.uniform(0.0, 1.0)])),
         "friction": float(rng.choice([0.0, 0.1, rng.uniform(0.0, 1.0)])),
-        "impact_law": str(rng.choice(carom.scene.contacts.IMPACT_LAWS)),
+        "impact_law": str(rng.choice(draw.LAWS)),
     }
     scene = carom.Scene(gravity=(0, -9.81, 0))
     made = {"gears": _gears, "train": _gears, "wheels": _wheels}.get(kind, _thrown)

@@ -104,10 +104,13 @@ def test_validate():
         ({"friction": math.inf}, "friction must be finite and at least 0, got inf"),
         (
             {"impact_law": "Newtn"},
-            "impact_law must be one of 'newton', 'poisson', 'stronge', got 'Newtn'",
+            "impact_law must be one of 'moreau', 'newton', 'poisson', 'stronge', got 'Newtn'",
         ),
         ({"impact_law": "poison"}, "did you mean 'poisson'?"),
-        ({"impact_law": 0}, "impact_law must be one of 'newton', 'poisson', 'stronge', got 0"),
+        (
+            {"impact_law": 0},
+            "impact_law must be one of 'moreau', 'newton', 'poisson', 'stronge', got 0",
+        ),
         ({"shape": None}, "body must have a shape for contact, got Body('die', None"),
         ({"name": "die"}, "name must be unique in the scene, got 'die'"),
         ({"name": ""}, "name must be a non-empty string, got ''"),

@@ -22,7 +22,7 @@ class CoordinateContact:
         Coefficient of restitution e, or its law.
     friction : float or Friction
         Friction coefficient mu, or its law.
-    impact_law : {"newton", "poisson", "stronge"}
+    impact_law : {"newton", "poisson", "stronge", "moreau"}
     tangential_restitution : float
         e_t.
     index : int

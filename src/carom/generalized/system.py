@@ -283,7 +283,7 @@ class GeneralizedSystem:
             Coefficient of restitution e, in [0, 1], or its law, a function of the speed of approach.
         friction : float or Friction
             Coulomb's friction coefficient, at least 0, or its law, a function of the slip. Default 0.
-        impact_law : {"newton", "poisson", "stronge"}
+        impact_law : {"newton", "poisson", "stronge", "moreau"}
             As for `carom.resolve_impact`.
         tangential_restitution : float
             e_t in [-1, 1], as for `carom.resolve_impact`. Default 0.

@@ -34,7 +34,7 @@ class Impact(Shown):
         Work of the normal force in compression (negative, unless the bodies approach again) and in restitution
         [J].
     friction_loss : float
-        Energy dissipated by friction, at least 0 [J].
+        Energy dissipated by friction [J], at least 0; with the law "moreau" it may be a gain.
     energy_change : float
         Change of kinetic energy: compression_work + restitution_work - friction_loss [J].
     phases : tuple of str
@@ -67,10 +67,12 @@ class Impact(Shown):
 
     @property
     def peak_force(self) -> Any:
-        """Greatest normal force [N], of several impacts an array; NaN without a stiffness."""
+        """Greatest normal force [N], of several impacts an array; NaN as `duration`."""
         from carom.impact.force import peak_force
 
         stiffness = self._stated.get("stiffness")
+        if not with_path(self._stated.get("law", "newton")):
+            stiffness = None
         none = np.full(np.shape(self.compression_work), np.nan)
         peak = (
             none if stiffness is None else peak_force(self.compression_work, *stiffness._of(None))
@@ -79,8 +81,8 @@ class Impact(Shown):
 
     @property
     def duration(self) -> float:
-        """Duration [s] of a single impact; NaN without a stiffness."""
-        force = self._force()
+        """Duration [s] of a single impact; NaN without a stiffness, or with a law that has no course."""
+        force = self._force() if with_path(self._stated.get("law", "newton")) else None
         return np.nan if force is None else force.duration
 
     def force(self, stiffness: Stiffness | Hertz | None = None) -> Any:
@@ -138,11 +140,13 @@ def resolve_impact(
     restitution : float or carom.Restitution, or array_like of them
         Coefficient e in [0, 1], or a law of the speed of approach. For 0 the impact ends with compression, with
         every law.
-    law : {"newton", "poisson", "stronge"}, or array of them
+    law : {"newton", "poisson", "stronge", "moreau"}, or array of them
         Definition of e, also by the name `impact_law`: the ratio of normal velocities (kinematic, default), of
         normal impulses (kinetic), or the square root of the ratio of works of the normal force (energetic). The
         three agree if the direction of slip is constant. Newton's law can increase the energy if slip stops or
-        reverses; Stronge's never does.
+        reverses; Stronge's never does. ``"moreau"`` is Newton's with friction by the slip after the impact: one
+        contact problem (`carom.solve_contacts` with the velocity ``[u_n (1 + e), u_t]``) without a path. It may
+        add energy too; works are divided as by a spring, and phases are those after the impact.
     tangential_restitution : float or array_like
         Coefficient e_t in [-1, 1]. Where the impact ends in stick the slip becomes ``-e_t`` times that before,
         as far as the cone of friction and the energy that friction has taken allow, without a gain. 1 is a
@@ -246,6 +250,22 @@ def checked_impact(inverse_mass, velocity, friction, restitution, law):
     mu = checks.number("friction", friction, least=0.0)
     e = checks.number("restitution", restitution, least=0.0, most=1.0)
     return W, u, mu, e, NUMBERS[checks.choice("law", law, NUMBERS)]
+
+
+def with_path(law: str) -> bool:
+    """Return whether a law follows the impact over its impulse, and does not only state what is after it."""
+    from carom.law.impact_laws import NUMBERS, WITHOUT_PATH
+
+    return NUMBERS.get(law) not in WITHOUT_PATH
+
+
+def need_path(what: str, law: str) -> None:
+    """Raise ValueError if the course of an impact is asked for whose law has none."""
+    if not with_path(law):
+        raise ValueError(
+            f"{what} must be of an impact with a course over its impulse, got impact_law={law!r}, which states "
+            "only the velocities after it; the other laws have one"
+        )
 
 
 def checked_tangential(given) -> float:

@@ -281,7 +281,7 @@ def of_stated(stated: dict[str, Any], stiffness) -> ImpactForce:
         If the stiffness is none, or the friction of the impact is no number.
     """
     from carom import checks
-    from carom.impact.api import resolve_impact
+    from carom.impact.api import need_path, resolve_impact
 
     hint = "; the stiffness of the bodies, not one relative to those of other contacts"
     checks.instance("stiffness", stiffness, ABSOLUTE, hint)
@@ -294,6 +294,7 @@ def of_stated(stated: dict[str, Any], stiffness) -> ImpactForce:
             "the impact must have one number as friction and one as restitution, got a law, anisotropic "
             "friction, or parts of a body with different materials"
         )
+    need_path("the force in time", str(given[4]))
     solved = resolve_impact(*given)
     impulses = float(solved.compression_impulse[0]), float(solved.impulse[0])
     works = solved.compression_work, solved.restitution_work

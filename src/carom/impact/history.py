@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from carom import arguments, checks
-from carom.impact.api import checked_impact, checked_tangential, phase_names, raise_for
+from carom.impact.api import checked_impact, checked_tangential, need_path, phase_names, raise_for
 
 MOST_STEPS = 100_000  # of one passage through the layer: more steps would only add round-off
 
@@ -108,7 +108,8 @@ def impact_layer(
     Parameters
     ----------
     inverse_mass, velocity, friction, restitution, law
-        As for `resolve_impact`. A restitution below 1e-6 ends the impact with compression.
+        As for `resolve_impact`, except ``"moreau"``, which has no path. A restitution below 1e-6 ends the
+        impact with compression.
     penetration : float
         Greatest penetration delta as a fraction of the width, in (0, 1).
     width : float
@@ -152,6 +153,7 @@ def impact_layer(
     from carom.model.workspace import HIT
 
     W, u, mu, e, number = checked_impact(inverse_mass, velocity, friction, restitution, law)
+    need_path("the layer", law)
     delta = checks.number("penetration", penetration, above=0.0, below=1.0)
     b = checks.number("width", width, above=0.0, unit="m")
     steps = checks.integer("steps", steps, least=2, most=MOST_STEPS)

@@ -132,8 +132,11 @@ def layer_time(contact, hit, out):
     """Return the time that the impact takes in the layer.
 
     With Newton's law law A gives T_c = 2 b l/v_0, T_r = T_c/e. With the other laws, and after a jam, N is
-    constant in each phase, N_c = |A_c|/(b l) and N_r = A_r/(b l). A wedged pair has no restitution.
+    constant in each phase, N_c = |A_c|/(b l) and N_r = A_r/(b l). A wedged pair has no restitution, and a law
+    without a path takes no time.
     """
+    if hit.impact_law in impact_laws.WITHOUT_PATH:
+        return 0.0
     depth = -contact.width * math.log1p(-contact.penetration)
     if hit.impact_law == impact_laws.NEWTON and (int(out[layout.PHASES]) & _NOT_LAW_A) == 0:
         e = hit.restitution

@@ -15,6 +15,7 @@ from carom._compiled.decorators import entry, inlined, kernel
 from carom.friction.rays import outgoing, solve_tangential, stick_ratio
 from carom.geometry.thresholds import REMAINDER, ROUND_OFF, SUM_ERROR
 from carom.impact import layout as o
+from carom.impact.final_slip import by_final_slip
 from carom.impact.slip_step import expand, moved, normal_rate, write_end
 from carom.impact.taylor import reach
 from carom.impact.thresholds import (
@@ -80,6 +81,8 @@ def resolve(W, u, mu, e, law, out):
     code, m, before, units, size = scaled(W, u, mu + e)
     if code != o.OK:
         return code
+    if law in impact_laws.WITHOUT_PATH:
+        return by_final_slip(m, before, mu, e, units, out)
     contact = Contact(m, mu, size, out[o.STILL] / units[0])
     return finish(out, units, before, _follow(contact, before, e, law))
 

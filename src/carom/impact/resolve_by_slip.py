@@ -19,6 +19,7 @@ from carom._compiled.units import unit
 from carom.friction.rays import outgoing, stick_ratio
 from carom.geometry.thresholds import LAST_UNITS, ROUND_OFF
 from carom.impact import layout as o
+from carom.impact.final_slip import by_final_slip_of_law
 from carom.impact.resolve import (
     AT_GOAL,
     AT_STOP,
@@ -81,6 +82,8 @@ def resolve_by_slip(W, u, friction, e, law, out) -> int:
     code, m, start, units, size = scaled(W, u, friction.bound + e)
     if code != o.OK:
         return code
+    if law in impact_laws.WITHOUT_PATH:
+        return by_final_slip_of_law(m, start, friction, e, units, out)
     slip = Slip(m, size, units[0], friction)
     still, steps, at_rest = out[o.STILL] / units[0], 0, ROUND_OFF * size
     s = (start[1], start[2], start[0], 0.0, 0.0, 0.0, 0.0, 0.0)

@@ -29,6 +29,7 @@ from carom.impact.thresholds import SEED
 from carom.impact.work_mode import restore_work
 from carom.kinematics.contact_point import contact_velocity
 from carom.kinematics.moving_surfaces import set_surfaces
+from carom.law import impact_laws
 from carom.law.friction import bound_of_stick, depends_on_slip
 from carom.model.controls import LOCATE, WORK
 from carom.model.event_rows import begin_event, end_event
@@ -167,7 +168,7 @@ def strike_one(model, data, method, c, law):
 @inlined
 def collide(method, controls, contact, hit, history):
     """Solve the impact in work.hit by the method of the run: to round-off, or as in the paper."""
-    if method.kind == THREE_FIELD:
+    if method.kind == THREE_FIELD and hit.impact_law not in impact_laws.WITHOUT_PATH:
         return by_layer(controls, contact, hit, history)
     return resolve(hit.W, hit.u, hit.friction, hit.restitution, hit.impact_law, hit.out)
 

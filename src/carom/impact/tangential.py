@@ -38,7 +38,7 @@ def return_slip(W, u, mu, e, out):
     )
     # dP_n u_n s + dP_t.du_t s^2/2 is the energy that comes back
     drawn, back = n * out[o.VELOCITY], 0.5 * (t1 * x + t2 * y)
-    room = min(lost, max(0.0, -out[o.ENERGY_CHANGE]))
+    room = max(0.0, min(lost, -out[o.ENERGY_CHANGE]))
     s = min(cone, greatest_part(back, 0.5 * drawn, room))
     out[o.IMPULSE], out[o.IMPULSE + 1], out[o.IMPULSE + 2] = p + s * n, p1 + s * t1, p2 + s * t2
     out[o.VELOCITY + 1] += s * x

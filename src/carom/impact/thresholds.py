@@ -14,6 +14,7 @@ RAY_LENGTH = 1e-8  #: speed of the impact: slip up to which its friction is that
 LONGEST_IMPULSE = 1e6  #: speed of the impact by W_nn: longest step in p: round-off of u grows with p
 ENERGY_BALANCE = 1e-6  #: energy lost in compression, or sum of |p u|: accuracy of the balance of an impact
 GAIN = 1e-9  #: sum of |p u|: the same for Moreau's problem, which is solved without a passage
+FREE_GAIN = 1e6  #: sum of |p u|: the same where a law may add energy
 VISIBLE_ERROR = 1e-3  #: greatest velocity: a result with more approach or round-off is wrong
 WEDGED_PART = 1e4  #: P.W P: greatest sum of p_n (|u_n-| + |u_n+|): larger impulses are those of a wedge
 IMPACT_ERROR = 1e-13  #: size of the terms: smaller rates, couplings, depths and speeds count as zero

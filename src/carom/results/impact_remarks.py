@@ -14,6 +14,8 @@ from carom.status import Remark
 
 #: energy of a jam, of what the run exchanges, below which slip of round-off has jammed (a wheel that rolls)
 _ROUND_OFF = 1e-9
+#: the law "moreau", in sentences
+BY_FINAL_SLIP = 'Friction by the final slip (impact_law="moreau")'
 #: speed: of impacts that count as elastic, by that at which e is 1
 NEARLY = 1.01
 
@@ -21,7 +23,7 @@ NEARLY = 1.01
 def remarks(rows, events, run) -> tuple[str, ...]:
     """Return a sentence for each kind: how many impacts (`rows`) or `events` of a run, and the first."""
     marks, jams = int(np.bitwise_or.reduce(rows["phases"])), events["kind"] == r.JAMS
-    said = _gains(rows, run)
+    said = _gains(rows, run) + _gains_together(rows, run)
     if len(run.compiled.system.laws.pieces):
         said += _of_laws(rows, run)
     if marks & AT_END:
@@ -111,7 +113,7 @@ def _without_adhesion(run) -> list[str]:
 def _gains(rows, run) -> list[str]:
     """Return a sentence about the energy that Newton's law with friction has added, if beyond the tolerance.
 
-    Only an impact of a single point adds energy: several points return at most what they have absorbed. The
+    Here of single points: with laws that have a path several return at most what they have absorbed. The
     energy of an impact is that of its relative velocity, u.W^-1 u/2.
     """
     gains = rows["energy_change"] > 0.0
@@ -131,8 +133,31 @@ def _gains(rows, run) -> list[str]:
     if not gain.sum() > watch.tolerance * watch.exchanged:
         return []
     k = int(np.argmax(gain))
+    after = np.isin(laws["impact_law"], impact_laws.WITHOUT_PATH)
+    at_end = np.isin(own["contact"], system.contacts["number"][able & after])
+    law = "Newton's law with friction" if not at_end.all() else BY_FINAL_SLIP
     return [
-        f"Newton's law with friction added energy in {len(own)} impacts, at most {gain[k]:.3g} J "
+        f"{law} added energy in {len(own)} impacts, at most {gain[k]:.3g} J "
         f"{_place(own[k], run)}, {part[k]:.2%} of the energy of this impact. impact_law="
         '"stronge" cannot add any, nor can "poisson" at a single contact.'
+    ]
+
+
+def _gains_together(rows, run) -> list[str]:
+    """Return a sentence about the energy that friction by the final slip has added at several points."""
+    watch, system = run.watch[0], run.compiled.system
+    laws = law_of(system, system.contacts)
+    after = np.isin(laws["impact_law"], impact_laws.WITHOUT_PATH) & (laws["friction"] > 0.0)
+    own = rows[(rows["together"] > 1) & (rows["phases"] & AT_END == 0)]
+    if not after.any() or not len(own):
+        return []
+    times, first, place = np.unique(own["time"], return_index=True, return_inverse=True)
+    gain = np.bincount(place, own["energy_change"], len(times))
+    least = watch.tolerance * watch.exchanged
+    if not gain[gain > 0.0].sum() > least:
+        return []
+    k = int(np.argmax(gain))
+    return [
+        f"{BY_FINAL_SLIP} added energy in {np.count_nonzero(gain > 0.0)} impacts of several contacts, at most "
+        f"{gain[k]:.3g} J {_place(own[first[k]], run)}. The other laws cannot add any there."
     ]

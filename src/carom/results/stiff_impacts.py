@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.impact.api import with_path
 from carom.impact.force import duration, peak_force
 from carom.scene.stiffness import ABSOLUTE, Hertz, Stiffness, curvature_of
 
@@ -11,8 +12,8 @@ from carom.scene.stiffness import ABSOLUTE, Hertz, Stiffness, curvature_of
 def stiff_impacts(solution, rows, mu, e, law) -> tuple[np.ndarray, np.ndarray]:
     """Return the greatest normal force [N] and the duration [s] of the impacts (K,).
 
-    They are NaN without a stiffness. A point of a multiple impact has the force by the work of its own
-    compression, and no duration.
+    They are NaN without a stiffness, or with a law that has no course. A point of a multiple impact has the
+    force by the work of its own compression, and no duration.
     """
     pairs = solution.pairs
     peak, took = np.full((2, len(rows)), np.nan)
@@ -23,6 +24,7 @@ def stiff_impacts(solution, rows, mu, e, law) -> tuple[np.ndarray, np.ndarray]:
             continue
         k, n = stiffness.k, stiffness.exponent
         own = np.flatnonzero(rows.contact == number)
+        own = own[[with_path(str(name)) for name in law[own]]]
         peak[own] = peak_force(rows.compression_work[own], k, n)
         for i in own[(rows.together[own] == 1) & np.isfinite(mu[own] + e[own])].tolist():
             took[i] = _duration(rows[i], float(mu[i]), float(e[i]), str(law[i]), (k, n))

@@ -22,7 +22,7 @@ from carom.scene.speed_law import SpeedLaw
 from carom.scene.stiffness import ABSOLUTE, Hertz
 from carom.scene.stiffness import stiffness as absolute_or_relative
 
-IMPACT_LAWS = ("newton", "poisson", "stronge")
+IMPACT_LAWS = ("newton", "poisson", "stronge", "moreau")
 MULTIPLE = ("simultaneous", "sequential")  # in the order of `carom.impact.multiple.layout`
 RULES: dict[str, Callable[[float, float], float]] = {
     "average": lambda a, b: 0.5 * (a + b),
@@ -56,9 +56,10 @@ class ContactLaw:
         Coulomb's friction coefficient mu in impacts, at least 0, or its law. Default 0.
     friction_held : float or Friction
         mu in persistent contact, at least 0, or its law. Default: `friction`.
-    impact_law : {"newton", "poisson", "stronge"}
+    impact_law : {"newton", "poisson", "stronge", "moreau"}
         Definition of e: the ratio of normal speeds ("newton") or of normal impulses ("poisson"), or the square
-        root of the ratio of works ("stronge").
+        root of the ratio of works ("stronge"). "moreau" is that of normal speeds, with friction by the slip
+        after the impact.
     stiffness : float, Stiffness or Hertz
         Stiffness of the boundary layer of the contact relative to those of simultaneous contacts, above 0.
         Default 1. Or that of the bodies, from which force and duration of an impact follow.

@@ -161,8 +161,8 @@ class SceneStops(MethodsOfScene):
             Coefficient of restitution, from 0 (default) to 1, or its law: a function of the speed of the
             coordinate [rad/s or m/s].
         impact_law
-            ``"newton"`` (default), ``"poisson"`` or ``"stronge"``. A stop has no friction, so the laws differ
-            only in multiple impacts.
+            ``"newton"`` (default), ``"poisson"``, ``"stronge"`` or ``"moreau"``. A stop has no friction, so the
+            laws differ only in multiple impacts.
         coordinate
             Index of the coordinate of the joint. Default 0. Of a ball joint (`carom.joints.Spherical`) one of
             ``"rotation"``, ``"swing"`` (a cone) and ``"twist"``. Rotation and swing have upper limits, from 0

@@ -64,9 +64,11 @@ class SceneContacts(MethodsOfScene):
             of slip, as ``carom.Friction(static=0.4, kinetic=0.3)``, or of its direction. Default 0.
         friction_held
             mu in persistent contact, at least 0. Default: `friction`.
-        impact_law : {"newton", "poisson", "stronge"}
+        impact_law : {"newton", "poisson", "stronge", "moreau"}
             Definition of e: the ratio of normal speeds (``"newton"``, default) or of normal impulses
-            (``"poisson"``), or the square root of the ratio of works (``"stronge"``).
+            (``"poisson"``), or the square root of the ratio of works (``"stronge"``). ``"moreau"`` is
+            Newton's with friction by the slip after the impact, in one contact problem without a path: the law
+            of Moreau, Glocker and Siconos.
         stiffness
             Stiffness of the boundary layer relative to those of simultaneous contacts, above 0. Default 1.
             Or the stiffness of the bodies, `carom.Stiffness` or `carom.Hertz`: then `Solution.impacts` has the

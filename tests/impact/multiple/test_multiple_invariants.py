@@ -2,12 +2,12 @@
 
 import numpy as np
 import pytest
+from cases import LAWS
 from hypothesis import given, settings
 from hypothesis import strategies as st
 from multiple_cases import problems, strike_row
 
 from carom.impact.multiple.api import resolve_impacts
-from carom.scene.materials import IMPACT_LAWS
 
 few = settings(max_examples=60, deadline=None, derandomize=True)
 
@@ -38,7 +38,7 @@ def check(W, u, mu, e, impact, rtol):
 
 
 @few
-@given(problem=problems(), law=st.sampled_from(IMPACT_LAWS))
+@given(problem=problems(), law=st.sampled_from(LAWS))
 def test_simultaneous(problem, law):
     W, u, mu, e, kappa = problem
     impact = resolve_impacts(W, u, mu, e, law, stiffness=kappa, rtol=1e-6)
@@ -46,7 +46,7 @@ def test_simultaneous(problem, law):
 
 
 @few
-@given(problem=problems(), law=st.sampled_from(IMPACT_LAWS))
+@given(problem=problems(), law=st.sampled_from(LAWS))
 def test_sequential(problem, law):
     W, u, mu, e, _ = problem
     check(W, u, mu, e, resolve_impacts(W, u, mu, e, law, multiple="sequential"), 1e-8)

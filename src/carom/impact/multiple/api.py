@@ -32,10 +32,10 @@ class CornerImpact:
     compression_work, restitution_work : ndarray, shape (k,)
         Work of each normal force during loading (at most 0) and unloading (at least 0) [J].
     friction_loss : ndarray, shape (k,)
-        Energy dissipated by friction at each contact, at least 0 [J].
+        Energy dissipated by friction at each contact [J], at least 0; with the law "moreau" it may be a gain.
     energy_change : float
         Change of kinetic energy: compression_work + restitution_work - friction_loss, summed over the contacts
-        [J]. It is at most 0, except for a single contact with Newton's law.
+        [J]. It is at most 0, except for a single contact with Newton's law, and with the law "moreau".
     plastic_change : float
         Part of the change in a plastic event [J]: all of it if every restitution is 0, or the remaining energy
         of a body that is trapped, or wedged by friction; 0 if there was no plastic event.
@@ -100,10 +100,12 @@ def resolve_impacts(
     restitution : float, carom.Restitution, or a sequence of k of them
         Coefficient of restitution e in [0, 1], or a law of the speed of approach. If all e are 0, the impact is
         one plastic event. Otherwise an e below 0.01 is replaced by 0.01.
-    law : {"newton", "poisson", "stronge"} or a sequence of k of them
+    law : {"newton", "poisson", "stronge", "moreau"} or a sequence of k of them
         Definition of e: the ratio of normal velocities of each striking contact (default) or of impulses, or
         the square root of the ratio of works of the normal force. With more than one contact, no contact
-        returns more energy than it has absorbed.
+        returns more energy than it has absorbed. ``"moreau"`` at any of the contacts that strike together: all
+        are one contact problem with Newton's law and friction by the slip after, which may add energy; where
+        it has no solution, the least e of all holds, or e = 0.
     multiple : {"simultaneous", "sequential", "newton"}
         ``"simultaneous"`` (default): all contacts together through their boundary layers. ``"sequential"``: one
         impact after another, each time the contact that approaches fastest, together with those that approach

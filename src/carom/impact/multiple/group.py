@@ -45,7 +45,7 @@ def strike_group(g, by_newton, settings, laws, workspace):
     passage = by_reference(
         o.Passage(
             settings.rtol, settings.exponent, settings.max_events, settings.max_steps,
-            settings.max_rounds, by_slip, speed, laws,
+            settings.max_rounds, by_slip, summary.marks & o.FINAL_SLIP != 0, speed, laws,
         )
     )  # fmt: skip
     if by_newton:

@@ -30,6 +30,9 @@ MISSED = 2  #: the law of Newton or Poisson was not satisfied; the nearest resul
 CAPPED = 4  #: the law of a contact requires e_* > 1, and is not satisfied: energy cannot grow
 EXACT = 16  #: contacts that move alike, resolved exactly as one
 REPELLED = 32  #: the impulse was changed by round-off, so that energy does not grow
+FINAL_SLIP = (
+    512  #: one contact problem by the law of a contact that has no path: it may gain energy
+)
 NO_RESULT = 256  #: after every method a contact approaches, or energy has grown
 
 HAS_STUCK = 2  #: bit of `sticks`: the contact is open, and opened without slip
@@ -88,6 +91,7 @@ class Passage(NamedTuple):
     max_steps: int
     max_rounds: int
     by_slip: bool  # whether any friction depends on the slip
+    may_gain: bool  # whether the energy may grow, in one contact problem
     speed: float  # unit of speeds [m/s]
     laws: Laws
 

@@ -25,7 +25,7 @@ from carom.impact.layout import AT_ONCE, PLASTIC
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.layer import set_velocity, start
 from carom.impact.multiple.slip_law import MOST_TURNS, by_law, by_secant, in_slip, slip_of
-from carom.impact.thresholds import GAIN, VELOCITY_LEFT, VISIBLE_ERROR, WEDGED_PART
+from carom.impact.thresholds import FREE_GAIN, GAIN, VELOCITY_LEFT, VISIBLE_ERROR, WEDGED_PART
 
 #: in turn: each contact with its own e, all with the least, none with any, and then without friction
 OWN_E, LEAST_E, NO_E, NO_FRICTION = range(4)
@@ -34,7 +34,7 @@ OWN_E, LEAST_E, NO_E, NO_FRICTION = range(4)
 @unit
 def solve_group(k, work, passage) -> tuple[int, float]:
     """Resolve the group; return its marks, and the change of energy in a plastic event."""
-    least, most = 1.0, 0.0
+    least, most, growth = 1.0, 0.0, FREE_GAIN if passage.may_gain else GAIN
     marks, change = PLASTIC, 0.0
     for i in range(k):
         least = min(least, work.contact[i].restitution)
@@ -48,7 +48,7 @@ def solve_group(k, work, passage) -> tuple[int, float]:
         marks = AT_ONCE if tried == OWN_E else AT_ONCE | o.MISSED if tried == LEAST_E else PLASTIC
         before, after, impulse = work.before, work.now.velocity, work.now.impulse
         solved = residual <= VISIBLE_ERROR and bounded(3 * k, before, after, impulse)
-        if solved and sound(work.W, before, after, impulse, 1.0, (3 * k, VELOCITY_LEFT, GAIN)):
+        if solved and sound(work.W, before, after, impulse, 1.0, (3 * k, VELOCITY_LEFT, growth)):
             break
     return marks, change if marks & PLASTIC != 0 else 0.0
 

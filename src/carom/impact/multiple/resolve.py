@@ -13,11 +13,13 @@ import math
 from carom._compiled.decorators import entry, kernel
 from carom.geometry.thresholds import LAST_DIGIT
 from carom.impact import thresholds as limits
-from carom.impact.layout import BAD_INPUT, OK, PLASTIC
+from carom.impact.final_slip import works
+from carom.impact.layout import AT_ONCE, BAD_INPUT, OK, PLASTIC
 from carom.impact.multiple import layout as o
 from carom.impact.multiple.classes import find_groups, find_pressed, reduce
 from carom.impact.multiple.group import strike_group
 from carom.impact.multiple.moreau import sound
+from carom.law import impact_laws
 
 
 @entry
@@ -50,7 +52,7 @@ def resolve_multiple(k, contacts, laws, settings, workspace, out):
         out.summary[0].events += count
         out.summary[0].marks &= ~o.EXACT
     if not together:
-        _finish(k, contacts, out)
+        _finish(k, contacts, out, False)
     return OK
 
 
@@ -64,15 +66,18 @@ def _together(scale, settings, laws, workspace):
     result.classes = reduce(k, blow, laws, scale)
     find_pressed(k, blow, laws, blow.impact[0].still)
     groups = find_groups(k, result.classes, blow)
-    by_newton = settings.multiple == o.BY_NEWTON
+    at_end = by_final_slip(k, contacts, laws)
+    by_newton, growth = settings.multiple == o.BY_NEWTON or at_end, limits.ENERGY_BALANCE
+    if at_end:
+        result.marks, growth = o.FINAL_SLIP, limits.FREE_GAIN
     while True:
         for g in range(groups):
             strike_group(g, by_newton, settings, laws, workspace)
             if clock.left < 0:
                 return  # it was stopped: there is no result
-        _finish(k, contacts, out)
+        _finish(k, contacts, out, True)
         exact = (result.marks & o.EXACT) != 0  # a single contact may gain energy with Newton's law
-        bounds = (3 * k, limits.VISIBLE_ERROR, limits.ENERGY_BALANCE)
+        bounds = (3 * k, limits.VISIBLE_ERROR, growth)
         if exact or sound(contacts.W, contacts.u, out.velocity, out.impulse, scale, bounds):
             break
         if by_newton:
@@ -80,6 +85,17 @@ def _together(scale, settings, laws, workspace):
             break
         by_newton = True
         result.marks, result.miss, result.plastic_change = 0, 0.0, 0.0
+    if at_end and result.marks & o.MISSED == 0:
+        result.marks &= ~AT_ONCE
+
+
+@kernel
+def by_final_slip(k, contacts, laws):
+    """Return whether the law of any contact has no path: all are one contact problem then."""
+    for i in range(k):
+        if laws.table[contacts.contact[i].law].impact_law in impact_laws.WITHOUT_PATH:
+            return True
+    return False
 
 
 @kernel
@@ -169,7 +185,7 @@ def take(k, contacts, m, blow, out):
         i = blow.contacts.contact[a].place
         out.compression[i] += min(0.0, part.compression[a])
         out.restitution[i] += max(0.0, part.restitution[a])
-        out.friction[i] += max(0.0, part.friction[a])
+        out.friction[i] += part.friction[a]
         out.wedged[i] = part.wedged[a]
         for r in range(3):
             impulse = part.impulse[3 * a + r]
@@ -192,8 +208,11 @@ def take(k, contacts, m, blow, out):
 
 
 @kernel
-def _finish(k, contacts, out):
-    """Write u+ = u + W P and the energy; remove what round-off changed in it."""
+def _finish(k, contacts, out, whole):
+    """Write u+ = u + W P and the energy; remove what round-off changed in it.
+
+    `whole`: this is the impact of contacts that strike together, not one of several blows.
+    """
     W, u = contacts.W, contacts.u
     n, result = 3 * k, out.summary[0]
     P_, after = out.impulse, out.velocity
@@ -203,7 +222,8 @@ def _finish(k, contacts, out):
     for i in range(k):
         if not P_[3 * i] * W[3 * i, 3 * i] > LAST_DIGIT * most:
             P_[3 * i], P_[3 * i + 1], P_[3 * i + 2] = 0.0, 0.0, 0.0
-    capped, elastic = (result.marks & o.EXACT) == 0, _keeps_energy(k, contacts, out)
+    capped = (result.marks & (o.EXACT | o.FINAL_SLIP)) == 0
+    elastic = _keeps_energy(k, contacts, out)
     for turn in range(2):
         energy, gain = 0.0, 0.0
         for a in range(n):
@@ -220,7 +240,21 @@ def _finish(k, contacts, out):
         for a in range(n):
             P_[a] *= 1.0 - energy / gain
         result.marks |= o.REPELLED
-    close_ledger(k, out)
+    if result.marks & o.FINAL_SLIP == 0:
+        close_ledger(k, out)
+    elif whole:
+        share_works(k, contacts, out)
+
+
+@kernel
+def share_works(k, contacts, out):
+    """Write the works of contacts whose impulses have no path: they add up to the change of energy."""
+    u, after, P = contacts.u, out.velocity, out.impulse
+    for i in range(k):
+        a = 3 * i
+        out.compression[i], out.restitution[i] = works(u[a], after[a], P[a])
+        rub = P[a + 1] * (u[a + 1] + after[a + 1]) + P[a + 2] * (u[a + 2] + after[a + 2])
+        out.friction[i] = 0.0 - 0.5 * rub
 
 
 @kernel

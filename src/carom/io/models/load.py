@@ -81,7 +81,7 @@ def load_model(
     friction : float, optional
         Sliding friction of all contacts. Default: by MuJoCo's rule the larger value of the two geoms of a pair,
         or that of the geom with the higher priority.
-    impact_law : {"newton", "poisson", "stronge"}
+    impact_law : {"newton", "poisson", "stronge", "moreau"}
         Law of restitution of contacts and of joint limits. Default ``"newton"``.
     limit_restitution : float
         Restitution of joint limits. Default 0.

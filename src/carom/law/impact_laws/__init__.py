@@ -3,7 +3,7 @@
 Restitution ends when a measured quantity reaches a goal. A law defines
 
 - `MEASURE`, the quantity: "speed" (u_n), "impulse" (the normal impulse of restitution), or "work" (the work of
-  the normal force in restitution);
+  the normal force in restitution); "nothing" if the impact has no path (`carom.impact.final_slip`);
 - `goal(e, v0, p_c, work_c)`, its value at the end, from the restitution, the speed of approach [m/s], and the
   normal impulse [N s] and the work of the normal force [J], below zero, of compression;
 - `GAINS`: whether the law may raise the energy if there is friction.
@@ -31,6 +31,7 @@ def _numbers(chosen) -> tuple[int, ...]:
 BY_SPEED = _numbers(lambda law: law.MEASURE == "speed")
 BY_IMPULSE = _numbers(lambda law: law.MEASURE == "impulse")
 BY_WORK = _numbers(lambda law: law.MEASURE == "work")
+WITHOUT_PATH = _numbers(lambda law: law.MEASURE == "nothing")
 GAINING = _numbers(lambda law: law.GAINS)
 COUNT = len(LAWS)
 

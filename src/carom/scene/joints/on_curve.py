@@ -70,7 +70,7 @@ class PointOnCurve(OnCurve):
         along the coordinate. Default None: the point cannot leave the curve.
     restitution, friction
         e from 0 to 1 (default 0), and mu at least 0 (default 0), or their laws, of a rail that can be left.
-    impact_law : {"newton", "poisson", "stronge"}
+    impact_law : {"newton", "poisson", "stronge", "moreau"}
         Definition of e of a rail that can be left. Default "newton".
 
     Raises

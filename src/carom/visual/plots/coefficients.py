@@ -41,7 +41,7 @@ def e_mu(
     velocity : array_like, shape (3,)
         Relative velocity before the impact [m/s]; the normal component is first, and negative.
     law : {"newton", "poisson", "stronge"}
-        Law of restitution. Default "newton".
+        Law of restitution, with a path. Default "newton".
     most_friction : float
         Greatest friction, above 0. Default 1.
     points : int
@@ -64,12 +64,13 @@ def e_mu(
     ValueError
         If an argument is invalid.
     """
-    from carom.impact.api import checked_impact
+    from carom.impact.api import checked_impact, need_path
     from carom.impact.slip_directions import critical_friction
 
     most = checks.number("most_friction", most_friction, above=0.0, most=1e3)
     count = checks.integer("points", points, least=2, most=1001)
     W, u, _, _, law_number = checked_impact(inverse_mass, velocity, 0.0, 0.0, law)
+    need_path("the map of outcomes", law)
     mu, e = np.linspace(0.0, most, count), np.linspace(0.0, 1.0, count)
     number, loss = _outcomes(W, u, law_number, mu, e)
     figure.pyplot()

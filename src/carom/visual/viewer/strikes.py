@@ -6,6 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
+from carom.impact.api import with_path
 from carom.results.joint_impulses import world_impulses
 
 LISTED = 1000  # impacts in the list: the strongest
@@ -66,8 +67,8 @@ def persistent_forces(solution, times: np.ndarray, rows: int = MOST_ARROWS) -> P
 
 
 def inside_of(solution, k: int) -> Inside | None:
-    """Return the course of impact `k` in its layer; None if it is part of a multiple impact."""
-    if solution.impacts.together[k] > 1:
+    """Return the course of impact `k` in its layer; None if it is part of a multiple impact, or has none."""
+    if solution.impacts.together[k] > 1 or not with_path(str(solution.impacts.law[k])):
         return None
     history = solution.impact_history(k, steps=SPLINE_STEPS)
     force = np.column_stack([history.normal_force, history.friction_force])
