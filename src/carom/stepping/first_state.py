@@ -8,6 +8,7 @@ from carom.contact.depth import write_least_gaps
 from carom.dynamics.reactions import start_errors, start_speeds
 from carom.kinematics.thresholds import END_MARGIN
 from carom.model.arrays import ON_CURVE
+from carom.model.thresholds import LEAST_SPEED
 from carom.options import Options
 from carom.scene.joints import Joint
 from carom.scene.scene import Scene
@@ -79,7 +80,7 @@ def check_joints(scene: Scene, compiled, start, work, options: Options) -> None:
             raise ValueError(
                 f"position violates {what}: its error must be 0, got {off:.6g}; {fits}"
             )
-        if rate * weight <= options.constraint_tolerance * speed + 1e-300:
+        if rate * weight <= options.constraint_tolerance * speed + LEAST_SPEED:
             continue
         if isinstance(element, Joint):
             raise ValueError(
