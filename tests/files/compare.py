@@ -36,6 +36,19 @@ def differences(a: carom.Solution, b: carom.Solution) -> list[str]:
     return out
 
 
+def goes_on(scene: carom.Scene, duration: float, path, **how) -> carom.Solution:
+    """Check that a run that goes on from its file has the bits of a whole one, which is returned."""
+
+    def stop(done, total):
+        if done >= 0.5 * total:
+            raise KeyboardInterrupt
+
+    whole = carom.simulate(scene, duration, **how)
+    carom.simulate(scene, duration, save=path, progress=stop, throw=False, **how)
+    assert differences(carom.resume(path), whole) == []
+    return whole
+
+
 def derived_differences(a: carom.Solution, b: carom.Solution) -> list[str]:
     """The same of what is worked out on demand."""
     middle = 0.5 * (a.t[1:] + a.t[:-1])

@@ -6,7 +6,7 @@ from scipy.integrate import solve_ivp
 
 import carom
 from carom import GROUND, joints
-from files.compare import differences
+from files.compare import goes_on
 
 G, R = 9.81, 0.1
 HOW = [({}, 1e-8), ({"rtol": 1e-10}, 1e-10), ({"step": 1e-2}, 1e-10)]
@@ -242,15 +242,8 @@ def test_beside_a_wheel_without_slip():
 
 def test_files_and_changes(tmp_path):
     scene = post((1.0, 2.0), 0.2, length=2.0 + np.pi * R + 0.02)
-    whole = carom.simulate(scene, 0.4, step=1e-2)
     path = tmp_path / "run.h5"
-
-    def stop(done, total):
-        if done >= 0.5 * total:
-            raise KeyboardInterrupt
-
-    carom.simulate(scene, 0.4, step=1e-2, save=path, progress=stop, throw=False)
-    assert differences(carom.resume(path), whole) == []
+    whole = goes_on(scene, 0.4, path, step=1e-2)
     again = carom.Solution.load(path).scene
     assert repr(again.stops) == repr(scene.stops)
     np.testing.assert_array_equal(carom.simulate(again, 0.4, step=1e-2).position, whole.position)

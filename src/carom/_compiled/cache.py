@@ -22,7 +22,7 @@ import zlib
 from collections.abc import Callable
 from functools import cache, cached_property
 from pathlib import Path
-from typing import IO, Any, NamedTuple
+from typing import IO, Any, ClassVar, NamedTuple
 
 import llvmlite
 import llvmlite.binding as llvm
@@ -72,7 +72,7 @@ class StampedCache(_Cache):
     """
 
     warned = False  # whether the warning that the cache cannot be written was given
-    _known: dict[Callable, Own] = {}  # noqa: RUF012  texts of functions, for their stamps
+    _known: ClassVar[dict[Callable, Own]] = {}  # texts of functions, for their stamps
 
     def __init__(self, py_func, linked: bool = True):
         self._function, self._linked, self._noted = py_func, linked, False

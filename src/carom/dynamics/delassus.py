@@ -71,7 +71,7 @@ def inverse_masses(system, k, points, state, work, W):
                 continue
             spread(system, points[j], state, unit_vector(r), work)
             for i in range(k):
-                if free and no_body_of(points[i], points[j]):
+                if free and no_common_body(points[i], points[j]):
                     W[3 * i, m], W[3 * i + 1, m], W[3 * i + 2, m] = 0.0, 0.0, 0.0
                     continue
                 W[3 * i, m], W[3 * i + 1, m], W[3 * i + 2, m] = contact_motion(
@@ -93,8 +93,8 @@ def inverse_masses(system, k, points, state, work, W):
 
 
 @kernel
-def no_body_of(point, other):
-    """Return whether a point, which is none of joints, has no body that the other has."""
+def no_common_body(point, other):
+    """Return whether two points, the first of which is none of joints, have no body in common."""
     if point.motion > MOTION_PIVOT or point.a in (other.a, other.b):
         return False
     return point.b < 0 or point.b not in (other.a, other.b)

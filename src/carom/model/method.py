@@ -34,7 +34,7 @@ class Method(NamedTuple):
     stiff: np.ndarray = KENNEDY_CARPENTER.A  # (6, 6)
     stiff_E: np.ndarray = KENNEDY_CARPENTER.E  # (1, 6) weights of its error estimate
     closing: np.ndarray = CLOSING.A  # (2, 2) the same of one stage: implicit Euler
-    # its difference from the trapezoidal rule, where its end does not determine it (`leave_undetermined`)
+    # its difference from the trapezoidal rule, where its end does not determine it (`note_undetermined`)
     closing_E: np.ndarray = np.array([[0.0, 0.0, 0.0, 0.5]])
 
 

@@ -43,12 +43,10 @@ class Coordinates:
         self.placement = placement
         self.rows: list[np.recarray] = []
         self.numbers: dict[tuple[Any, int | str], int] = {}
-        self.sums: dict[
-            Any, int
-        ] = {}  # of combinations, by their terms; of ropes that rub also by their slip
-        self.listed: list[
-            tuple[int, tuple[tuple[int, float], ...]]
-        ] = []  # combinations, with their terms
+        # of combinations, by their terms; of ropes that rub also by their slip
+        self.sums: dict[Any, int] = {}
+        # combinations, with their terms
+        self.listed: list[tuple[int, tuple[tuple[int, float], ...]]] = []
         self.wraps: dict[int, np.recarray] = {}  # of ropes that rub, by the index of their length
         self.curves = Curves()
         self.counted, self.used = 0, False

@@ -28,7 +28,7 @@ from carom.model.actions import (
 )
 from carom.persistent.finish import check_end, copy_to_stage, note_modes, write_end
 from carom.persistent.members import explicit_member, implicit_member
-from carom.persistent.return_to_surfaces import leave_undetermined
+from carom.persistent.return_to_surfaces import note_undetermined
 from carom.persistent.rows import beyond_stop, bodies_of
 from carom.persistent.springs import FACTORED, count_factors
 from carom.persistent.start import first_modes, first_stage
@@ -146,7 +146,7 @@ def step_group(model, data, method, label, h):
         ended, _, applied, friction = end_implicitly(
             model, data, (method.stiff, False), label, h, powers
         )
-        if ended > 0:
+        if ended:
             note_errors(model, data, method.stiff_E, label, 0, h)
             if order > 0:
                 search.order = min(order, STIFF_ORDER)
@@ -156,7 +156,7 @@ def step_group(model, data, method, label, h):
     ended, turned, applied, friction = end_implicitly(
         model, data, (method.closing, True), label, h, powers
     )
-    if ended == 0:
+    if not ended:
         return applied, friction, CONSTRAINTS_LOST
     changes = order > 0 and (turned or opens(data, label))
     if changes:
@@ -190,25 +190,24 @@ def greatest_first(model, data, label):
 def end_implicitly(model, data, method, label, h, powers):
     """Step a group by a stiff method, and write its end, as `implicit_member` says.
 
-    Return the number of its points, 0 if there is none, whether friction has changed in it, and the work of
-    loads and of friction.
+    Return whether there is one, whether slip begins, ends or turns, and the work of loads and of friction.
     """
     k, applied, friction = implicit_member(model, data, method, label, h, powers)
     (A, closes), member = method, data.group.bodies.member
     if k == 0:
-        return 0, False, applied, friction
+        return False, False, applied, friction
     if not closes:
         note_left(model, data, k)
     turned = note_modes(model, data, k, h)
     joined, driven = write_end(model, data, label, k)
     applied += driven
     if not joined:
-        return 0, False, applied, friction
+        return False, False, applied, friction
     if closes and model.controls.order > 0:
-        leave_undetermined(model.system, data, k, label)
+        note_undetermined(model.system, data, k, label)
         copy_to_stage(members(data.work, label, member), data.work.trial, data.group, data.work)
     _, driven, rubbed = check_end(model, data, label, A.shape[0], h, False)
-    return k, turned, applied + driven, friction + rubbed
+    return True, turned, applied + driven, friction + rubbed
 
 
 @kernel

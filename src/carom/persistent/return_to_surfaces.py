@@ -148,7 +148,7 @@ def onto_tangents(system, data, k, count):
 
 
 @kernel
-def leave_undetermined(system, data, k, label):
+def note_undetermined(system, data, k, label):
     """Write to stage 3 what forces have changed in a closing step that rows at its end do not determine.
 
     Stages 0 and 1 have the accelerations at its start and those that made the step. Where rows at the end bind

@@ -15,15 +15,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from carom import arguments, checks, fields
-from carom.fields import (
-    Integer,
-    Number,
-    NumberOrNone,
-    Value,
-    Vector,
-    VectorOrNone,
-    keep,
-)
+from carom.fields import Integer, Number, NumberOrNone, Value, Vector, VectorOrNone, keep
 from carom.geometry.frames import triad
 from carom.scene.bodies import Body, Ground
 from carom.scene.coordinates import Combination, Strand, Wrap
@@ -228,15 +220,9 @@ class SceneRope(SceneStops):
             first, last = of.joints[0].child, of.parent
             made.append(
                 self._parts.make(
-                    AppliedForce,
-                    "rope",
-                    own,
-                    False,
-                    definition=definition,
-                    parent=last,
-                    child=first,
+                    AppliedForce, "rope", own, False, definition=definition, parent=last, child=first
                 )
-            )
+            )  # fmt: skip
             slack = 0.0
         return tuple(made)
 

@@ -139,7 +139,9 @@ class Watched:
         """Return the run as conditions see it."""
         look = Observed(self.run, self.joints, self.struck)
         if self.events:
-            look.state  # noqa: B018 - of the events that may be found
+            _ = (
+                look.state
+            )  # it is kept: the state of an event is that of before what the event changes
         return look
 
     def value(self, i: int, look: Observed) -> float:
