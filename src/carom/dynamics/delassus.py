@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
 from carom.dynamics.contact_impulse import acts, add_impulse, alone, clear_wrenches, spread
 from carom.dynamics.solve import free_body, solve
 from carom.geometry.rotation import cross, unit_vector
@@ -61,35 +61,42 @@ def inverse_masses(system, k, points, state, work, W):
         inverse_masses_of_one(system.bodies[points[0].a], k, points, state, W)
         return
     still_all(k, points, work)
+    for row in range(3 * k):
+        W[row, : 3 * k] = 0.0
     for j in range(k):
         free = alone(system, points[j])
         for r in range(3):
             m = 3 * j + r
             if not acts(points[j].motion, r):
-                for row in range(3 * k):
-                    W[row, m] = 0.0
                 continue
             spread(system, points[j], state, unit_vector(r), work)
             for i in range(k):
-                if free and no_common_body(points[i], points[j]):
-                    W[3 * i, m], W[3 * i + 1, m], W[3 * i + 2, m] = 0.0, 0.0, 0.0
-                    continue
-                W[3 * i, m], W[3 * i + 1, m], W[3 * i + 2, m] = contact_motion(
-                    system, points[i], state, work
-                )
+                if not (free and no_common_body(points[i], points[j])):
+                    W[3 * i, m], W[3 * i + 1, m], W[3 * i + 2, m] = contact_motion(
+                        system, points[i], state, work
+                    )
         if free:
             still_ends(points[j], work)
         else:  # all joined bodies have a motion, not only those of the point
             still_all(k, points, work)
-    for i in range(3 * k):
-        for j in range(i):
-            m = 0.5 * (W[i, j] + W[j, i])
-            W[i, j], W[j, i] = m, m
+    for i in range(k):
+        for j in range(i + 1):
+            if not (alone(system, points[j]) and no_common_body(points[i], points[j])):
+                make_symmetric(3 * i, 3 * j, W)
     for i in range(k):
         # a stop has no tangents, a contact in a plane one: any positive values do
         if points[i].motion in (MOTION_STOP, MOTION_THREE):
             for m in (3 * i + 1, 3 * i + 2):
                 W[m, m] = W[m, m] if W[m, m] > 0.0 else W[3 * i, 3 * i]
+
+
+@inlined
+def make_symmetric(a, b, W):
+    """Give two blocks of W, from row a and column b on and its mirror image, the mean of both."""
+    for i in range(a, a + 3):
+        for j in range(b, b + 3):
+            m = 0.5 * (W[i, j] + W[j, i])
+            W[i, j], W[j, i] = m, m
 
 
 @kernel

@@ -22,7 +22,7 @@ CONTACT_STATE = [
     ("broken", "i8"),
     ("blows", "i8"),  # impacts in a row, after low bounces
     ("struck", "f8"),  # time of the last
-    ("step", "i8"),  # last step in which the two were near each other, plus 1
+    ("step", "i8"),  # last step, or piece of one, in which the two were near each other, plus 1
 ]
 
 #: a contact point in one state

@@ -14,7 +14,7 @@ import math
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.contact.groups import members
-from carom.dynamics.adapt import allowed_error, note_miss
+from carom.dynamics.adapt import MISS_SCALE, allowed_error, note_miss
 from carom.dynamics.explicit import CONSTRAINTS_LOST, bound_accelerations_of, rubs, stages_within
 from carom.dynamics.thresholds import ERROR_SHARE
 from carom.model.actions import (
@@ -141,35 +141,53 @@ def step_group(model, data, method, label, h):
             return applied, friction, 0
         search.stiff = 1
     falls = 0.5 * h * h * max(push, greatest_first(model, data, label))
-    if not (order > 0 and falls <= closing_size(model, data, label)):
+    near = order > 0 and falls <= closing_size(model, data, label)
+    for turn in range(0 if near else 1, 3):
+        closes = turn != 1
+        A, E = (method.closing, method.closing_E) if closes else (method.stiff, method.stiff_E)
         first_modes(model.system, data, label)
-        ended, _, applied, friction = end_implicitly(
-            model, data, (method.stiff, False), label, h, powers
+        ended, turned, applied, friction = end_implicitly(
+            model, data, (A, closes), label, h, powers
         )
-        if ended:
-            note_errors(model, data, method.stiff_E, label, 0, h)
-            if order > 0:
-                search.order = min(order, STIFF_ORDER)
+        if not ended:
+            continue
+        changes = order > 0 and (turned or opens(data, label))
+        if changes or not closes:
+            note_errors(model, data, E, label, 0, h)
+        if turn == 0 and changes and not is_allowed(model, data, label):
+            continue
+        if not closes:
+            search.order = min(order, STIFF_ORDER)
             note_unnamed(model, data, label, friction + applied, 0.0, push)
             return applied, friction, 0
-    first_modes(model.system, data, label)
-    ended, turned, applied, friction = end_implicitly(
-        model, data, (method.closing, True), label, h, powers
-    )
-    if not ended:
-        return applied, friction, CONSTRAINTS_LOST
-    changes = order > 0 and (turned or opens(data, label))
-    if changes:
-        note_errors(model, data, method.closing_E, label, 0, h)
-    for m in range(members(work, label, group.bodies.member)):
-        miss, b = work.body[group.bodies.member[m]].miss, group.bodies.member[m]
-        bound_accelerations_of(work, b, 2)
+        note_closed(model, data, label, falls)
+        note_unnamed(model, data, label, friction + applied, h, push)
+        friction -= lost_in_stop(model, data, label, friction + applied)
+        if order > 0:
+            search.order = 1 if changes else CLOSING_ORDER
+        return applied, friction, 0
+    return applied, friction, CONSTRAINTS_LOST
+
+
+@kernel
+def is_allowed(model, data, label):
+    """Return whether the errors of a step are allowed in each body of a group."""
+    controls, member, work = model.controls, data.group.bodies.member, data.work
+    for m in range(members(work, label, member)):
+        miss, size = work.body[member[m]].miss, model.system.bodies[member[m]].extent
+        if not miss[0] <= allowed_error(controls.rtol, controls.atol, size, miss[MISS_SCALE]):
+            return False
+    return True
+
+
+@kernel
+def note_closed(model, data, label, falls):
+    """Write the errors of a closing step for the bodies of a group, which `falls` misplaces."""
+    member, work = data.group.bodies.member, data.work
+    for m in range(members(work, label, member)):
+        miss = work.body[member[m]].miss
+        bound_accelerations_of(work, member[m], 2)
         miss[0], miss[1], miss[2] = max(miss[0], falls), 0.0, 0.0
-    note_unnamed(model, data, label, friction + applied, h, push)
-    friction -= lost_in_stop(model, data, label, friction + applied)
-    if order > 0:
-        search.order = 1 if changes else CLOSING_ORDER
-    return applied, friction, 0
 
 
 @kernel

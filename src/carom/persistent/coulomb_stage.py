@@ -34,29 +34,31 @@ from carom.persistent.springs import (
 )
 
 STAGE_ITERATIONS, HALVES, TOGETHER = 40, 6, 3
+UNKNOWN = (False, 0.0)  # forces that are not known, and are to be exact
 
 
 @kernel
-def solve_stage(k, hg, group):
+def solve_stage(k, hg, known, group):
     """Write the forces of a stage to `p`; return whether they exist.
 
     `u` has u~, `c` the accelerations without forces. With hg = 0 the law is that of accelerations: slip goes on
-    along `heading`, what has no velocity slips the way it accelerates.
+    along `heading`, what has no velocity slips the way it accelerates. `known` says whether `p` has the forces
+    of nearly this place, shared, and the error that forces may have.
     """
     for turn in range(LOAD_ROUNDS):
-        if not forces_of_stage(k, hg, group):
+        if not forces_of_stage(k, hg, known, group):
             return False
         if not renew_loads(k, 1.0, False, turn, group):
             return hg == 0.0 or not any_locks(k, hg, group)
     begin_loads(k, group)  # of slip that locks itself no friction is right: this one is small
-    forces_of_stage(k, hg, group)
+    forces_of_stage(k, hg, UNKNOWN, group)
     return False
 
 
 @kernel
-def forces_of_stage(k, hg, group):
+def forces_of_stage(k, hg, known, group):
     """Write the forces of a stage under given loads of joints, as `solve_stage` does."""
-    closed = group.closed
+    closed, (shared, rough) = group.closed, known
     for i in range(k):
         closed[i].presses = 1 if closed[i].weight > 0.0 else 0
     if moves_freely(k, group) and (hg == 0.0 or greatest(3 * k, group.u) == 0.0):
@@ -64,11 +66,14 @@ def forces_of_stage(k, hg, group):
             group.p[row] = 0.0
         return True
     for turn in range(2 * k + 2):
-        share(k, list_unknowns(k, group), group)
+        if turn > 0 or not shared:
+            share(k, list_unknowns(k, group), group)
         idle = find_idle(k, group)
-        if idle > 0.0 and not newton(k, hg, HALVES, idle, group):
+        if idle > 0.0 and not newton(k, hg, (HALVES, rough), idle, group):
             idle = 0.0
-        if not (newton(k, hg, HALVES, 0.0, group) or newton(k, hg, 1, 0.0, group)):
+        if not (
+            newton(k, hg, (HALVES, rough), 0.0, group) or newton(k, hg, (1, rough), 0.0, group)
+        ):
             return False
         if not change_loads(k, turn, group):
             return True
@@ -88,7 +93,7 @@ def solve_forces(k, group):
             and group.problem.heading[i, 1] == 0.0
         ):
             group.problem.kind[i] = CONE
-    found = solve_stage(k, 0.0, group)
+    found = solve_stage(k, 0.0, UNKNOWN, group)
     note_accelerations(k, group)
     return found
 
@@ -146,17 +151,19 @@ def list_unknowns(k, group):
 
 
 @kernel
-def newton(k, hg, halves, idle, group):
-    """Solve for given loads, by steps that are halved less than `halves` times; return whether equations hold.
+def newton(k, hg, bounds, idle, group):
+    """Solve for given loads; return whether equations hold.
 
-    Halved steps can stop where discs meet, between stick and slip; whole steps then go on.
+    `bounds`: steps are halved less than so many times, and accelerations may have such an error. Halved steps
+    can stop where discs meet, between stick and slip; whole steps then go on.
     """
+    halves, rough = bounds
     n, p, equations = list_unknowns(k, group), group.p, group.equations
     rows, before, r = equations.rows, equations.before, equations.r
     push, slip = largest(k, group), 0.0
     for i in range(k):
         slip = max(slip, max(abs(group.u[3 * i + 1]), abs(group.u[3 * i + 2])))
-    enough = limits.EQUATION_ERROR * push + (LAST_DIGIT * slip / hg if hg > 0.0 else 0.0)
+    enough = max(limits.EQUATION_ERROR, rough) * push + (LAST_DIGIT * slip / hg if hg > 0.0 else 0.0)
     size = write_equations(k, n, hg, idle, group)
     for _ in range(STAGE_ITERATIONS):
         if size <= enough:

@@ -58,7 +58,7 @@ from carom.persistent.slip_law import renew_modes
 from carom.persistent.springs import bound_per_force, solve_springs
 from carom.persistent.start import first_modes
 from carom.persistent.stops import locates, pass_stops
-from carom.persistent.thresholds import LAST_CHANGE, STAGE_CHANGE
+from carom.persistent.thresholds import EQUATION_ERROR, LAST_CHANGE, POSE_SHARE, STAGE_CHANGE
 
 FIXED_POINT = 25  # iterations of the pose of a stage
 
@@ -132,7 +132,7 @@ def implicit_stage(model, data, label, s, hg, closes):
     Return the number of points, -1 if there is no solution, and the powers of loads and of friction.
     """
     group, work, (count, loaded) = data.group, data.work, bodies_of(model, data, label)
-    k, change, power, rubbed = -1, 0.0, 0.0, 0.0
+    k, change, rough, power, rubbed = -1, 0.0, 0.0, 0.0, 0.0
     iterations = group.equations.iterations
     iterations[0], laws, turned = 0, any_depends_on_speed(model.system.laws), False
     if laws:
@@ -148,7 +148,11 @@ def implicit_stage(model, data, label, s, hg, closes):
             change, size = max(change, own[0]), max(size, own[1])
         if change > 0.0:  # a body that stops has errors of the others
             change = change / size if size > 0.0 else math.inf
-        settled = change <= LAST_CHANGE or (change <= ROUND_OFF and change >= 0.5 * last)
+        # what the next iteration would change, if it changes by the same part of that of this one
+        left = change * change / last if 0.0 < change < last < math.inf else change
+        settled = left <= LAST_CHANGE or (change <= ROUND_OFF and change >= 0.5 * last)
+        settled = settled and rough <= EQUATION_ERROR
+        rough = POSE_SHARE * change if turn > 0 and change < math.inf else 0.0
         if turn > 0 and settled and not turned:  # it is round-off, which grows with the forces
             break
         applied = accelerate_freely(model, data, loaded, count, s)
@@ -168,7 +172,9 @@ def implicit_stage(model, data, label, s, hg, closes):
         lost, struck = iterations[0], False
         for i in range(k):
             group.closed[i].passes = 0
-        if (closes and lost >= budget(k)) or not solve_beyond(model, data, k, hg, closes):
+        if (closes and lost >= budget(k)) or not solve_beyond(
+            model, data, (k, k == before, rough), hg, closes
+        ):
             if not closes:
                 return -1, 0.0, 0.0
             solve_impulses(model, data, k, hg)
@@ -189,13 +195,18 @@ def implicit_stage(model, data, label, s, hg, closes):
 
 
 @kernel
-def solve_beyond(model, data, k, hg, closes):
-    """Solve a stage, beyond stops that are to be located as if slip went on; return whether this is done."""
-    if not solve_stage(k, hg, data.group):
+def solve_beyond(model, data, points, hg, closes):
+    """Solve a stage, beyond stops that are to be located as if slip went on; return whether this is done.
+
+    `points` are their number, whether they have forces of the last iteration of the pose, and the error that
+    those of this one may have.
+    """
+    k = points[0]
+    if not solve_stage(k, hg, (points[1], points[2]), data.group):
         return False
     if not closes and locates(model, data):
         while pass_stops(model, data, k, hg):
-            if not solve_stage(k, hg, data.group):
+            if not solve_stage(k, hg, (True, points[2]), data.group):
                 return False
     return True
 

@@ -29,7 +29,7 @@ from carom.model.actions import MODE_STICK
 from carom.model.workspace import CONSTANT, MOTION_POINT
 from carom.persistent.joint_rows import is_driven
 from carom.persistent.settle import add_product, greatest, settle
-from carom.persistent.springs import list_given, response
+from carom.persistent.springs import last_torque, list_given, response
 from carom.persistent.thresholds import EQUATION_ERROR, PROXIMAL_SPRING
 
 
@@ -68,10 +68,11 @@ def factor_given(k, rubs, group):
     If it `rubs`, an impulse along the normal of a point that slips has its friction.
     """
     n, equations, W = list_given(k, group), group.equations, group.problem.W
+    last = last_torque(k, group)
     rows, A, L = equations.rows, equations.A, equations.factor
     for i in range(n):
         for j in range(n):
-            along = response(k, group, rows[i], rows[j]) if rubs else W[rows[i], rows[j]]
+            along = response(last, group, rows[i], rows[j]) if rubs else W[rows[i], rows[j]]
             A[i, j] = L[i, j] = along
         L[i, i] += PROXIMAL_SPRING * W[rows[i], rows[i]]
     lu.factor(L, n, equations.pivot, 0.0)

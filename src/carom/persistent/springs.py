@@ -124,11 +124,11 @@ def rows_of(k, i, group):
 @kernel
 def factor_rows(k, group):
     """List the given rows, write R P F^T and the factor of R P F^T + eps S; return their number."""
-    equations, n = group.equations, list_given(k, group)
+    equations, n, last = group.equations, list_given(k, group), last_torque(k, group)
     rows, A = equations.rows, equations.A
     for i in range(n):
         for j in range(n):
-            A[i, j] = response(k, group, rows[i], rows[j])
+            A[i, j] = response(last, group, rows[i], rows[j])
     factor(n, rows, group)
     return n
 
@@ -216,8 +216,19 @@ def moves(group, row):
 
 
 @kernel
-def response(k, group, a, row):
-    """Return the acceleration in row a by a unit force along a given row, with its friction."""
+def last_torque(k, group):
+    """Return the number of entries up to the last that is a torque of a point, 0 if none is."""
+    while k > 0 and group.closed[k - 1].motion == MOTION_POINT:
+        k -= 1
+    return k
+
+
+@kernel
+def response(last, group, a, row):
+    """Return the acceleration in row a by a unit force along a given row, with its friction.
+
+    `last` is the number of entries up to the last torque.
+    """
     W, i = group.problem.W, row // 3
     total = W[a, row]
     if row % 3 > 0:
@@ -225,7 +236,7 @@ def response(k, group, a, row):
     if group.problem.kind[i] == SLIDING:
         d = group.problem.heading[i]
         total -= group.problem.mu[i] * (d[0] * W[a, row + 1] + d[1] * W[a, row + 2])
-    for j in range(i + 1, k):
+    for j in range(i + 1, last):
         if turns_with(group, j, i):
             d = group.problem.heading[j]
             total -= group.problem.mu[j] * (d[0] * W[a, 3 * j + 1] + d[1] * W[a, 3 * j + 2])
@@ -299,7 +310,7 @@ def load(k, n, push, group):
         )
     if not free:
         return 0
-    most, force, count = 0.0, 0.0, 0
+    most, force, count, last = 0.0, 0.0, 0, last_torque(k, group)
     for i in range(n):
         r[i] = compliance_of(group, rows[i]) * p[rows[i]]
         if rows[i] % 3 == 0:  # stick is far softer
@@ -310,7 +321,7 @@ def load(k, n, push, group):
         if closed[i].motion == MOTION_POINT and closed[i].presses == 0 and closed[i].weight > 0.0:
             a = acceleration_of(k, row, group)
             for j in range(n):
-                soft = limits.PROXIMAL_SPRING * response(k, group, row, rows[j])
+                soft = limits.PROXIMAL_SPRING * response(last, group, row, rows[j])
                 a -= soft * equations.x[j]
             if a < -max(ROUND_OFF * push, LAST_DIGIT * force * group.problem.W[row, row]):
                 closed[i].presses, count = 1, count + 1

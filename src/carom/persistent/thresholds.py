@@ -11,6 +11,7 @@ LOAD_PROBE = 1e-3  #: friction that holds a joint: a part of it, for the derivat
 #: speed that forces give in a stage: a joint slides, and does not just give way
 SLIDE_OF_FORCES = 3.0
 LOAD_LEFT = 1e-9  #: load: the same for an error that more rounds do not make less
+POSE_SHARE = 1e-4  #: velocities: change by an iteration of a stage: error of its forces in the next one
 LAST_CHANGE = 1e-14  #: velocities: change by an iteration that is the last
 STAGE_CHANGE = 1e-10  #: velocities: after all iterations: a stage that changes by more has no solution
 FRICTION_LIMIT = 1.0 - 1e-6  #: greatest friction: less is within the cone; a stage leaves 3e-9 of a line

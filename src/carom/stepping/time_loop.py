@@ -21,8 +21,9 @@ from carom.stepping.crowd.layout import SPOTS
 from carom.stepping.crowd.step import step_crowd
 from carom.stepping.energy_balance import note_whole, watch_step
 from carom.stepping.event_step import NOT_FINITE, advance, left_ball
-from carom.stepping.grid import begin_and_length, end_of, is_saved
+from carom.stepping.grid import end_of, is_saved
 from carom.stepping.islands import one_island, parts
+from carom.stepping.islands.pieces import end_piece, note_busy, piece_of
 from carom.stepping.islands.plan import READY
 from carom.stepping.record import finite, grow, room_of_touches, save, still
 
@@ -42,7 +43,7 @@ def run(model, data, method, islands, grid, until):
         if step.since > r.LONG:
             return r.PAUSE
         step.since += 0.1 * data.state.shape[0]
-        step.begin, step.length = begin_and_length(grid, controls.duration, clock.step)
+        step.begin, step.length = piece_of(grid, controls, clock, islands)
         if islands.apart == 1:
             code = step_apart(model, data, method, islands)
         else:
@@ -58,7 +59,7 @@ def run(model, data, method, islands, grid, until):
             end_islands(model, data, islands)
         else:
             islands.single.begun[0] = 0
-        code = finish_step(model, data, grid)
+        code = finish_step(model, data, grid, islands)
         if code != 0:
             return code
     return 0
@@ -116,13 +117,14 @@ def step_apart(model, data, method, islands) -> int:
             parts.enter(system, own.active, data.active, own.work, islands, data.clocks[0])
             note_scale(system, model.controls, state, own.work)
             begin_count(model.controls, own.work)
-            parts.choose(system, model.controls, own.active, data.clocks[0].step, own.work)
+            parts.choose(system, model.controls, own.active, plan.number, own.work)
         controls = local_controls(model.controls, step)
         part = by_reference(Model(by_reference(system), controls))
         code = move_island(part, own, method)
         if code == 0:
             end_count(controls, own.work)
             note_gain(controls, step, data.watch[0])
+            note_busy(data.clocks[0].trials, own.active, own.work, plan)
             parts.leave(own.active, islands)
     return REPEAT if code != 0 and retry_apart(model, data, islands, code) else code
 
@@ -150,20 +152,23 @@ def without_gap(system, watch):
 
 
 @inlined
-def finish_step(model, data, grid):
-    """Set the clock to the end of the step, check the energy balance, and save the state if it is due."""
+def finish_step(model, data, grid, islands):
+    """Set the clock to the end of the piece, check the energy balance, and save the state if it is due."""
     system, controls, clock, state = model.system, model.controls, data.clocks[0], data.state
-    charge_impacts(clock, data.work.step[0])
-    data.work.step[0].spent = 0.0
-    clock.step += 1
-    clock.now = end_of(grid, controls.duration, clock.step)
+    step = data.work.step[0]
+    charge_impacts(clock, step)
+    step.spent, clock.now = 0.0, step.begin + step.length
+    ends = end_piece(grid, controls, clock, step.length, islands)
+    if ends:
+        clock.step += 1
+        clock.now = end_of(grid, controls.duration, clock.step)
     clock.still = min(clock.still, clock.now) if still(state) else math.inf
     if not finite(state):
         return NOT_FINITE
     watch_step(system, data)
     if not math.isfinite(clock.kinetic + clock.potential):
         return NOT_FINITE
-    if is_saved(grid, clock.step):
+    if ends and is_saved(grid, clock.step):
         if controls.location == LOCATE:
             watch_depth(system, state, clock.now, data.work, data.watch[0])
             if not data.watch[0].depth < math.inf:
@@ -236,7 +241,7 @@ def retry_apart(model, data, islands, code):
     if again:
         islands.plan[0].widen *= 2.0
     elif model.controls.hold == 1 and may_be_whole(code, data.active):
-        again = parts.give_up(model.controls, islands, data.clocks[0].step, data.work)
+        again = parts.give_up(model.controls, islands, islands.plan[0].number, data.work)
         if again:
             bodies = parts.bodies_of_present(islands)
             note_whole(model.system, model.controls, step, code, bodies, data.watch[0])
@@ -247,5 +252,4 @@ def retry_apart(model, data, islands, code):
 @unit
 def end_islands(model, data, islands):
     """Write all islands back to the whole system."""
-    number = data.clocks[0].step
-    parts.end_step(model.system, data.active, data.state, number, data.work, islands)
+    parts.end_step(model.system, data.active, data.state, data.work, islands)

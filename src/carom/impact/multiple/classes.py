@@ -163,29 +163,31 @@ def _same_kind(contacts, laws, i, j, tolerance):
 @kernel
 def _same_coupling(k, blow, count, i, j):
     """Return whether contacts i and j are coupled to each class in the same way."""
-    W = blow.clean
-    for q in range(count):
-        tolerance = GROUP_ERROR * _coupling_scale(W, j, blow.classes[q].first)
-        for r in range(3):
+    W, classes, sums = blow.clean, blow.classes, blow.sums
+    for r in range(3):
+        _sum_differences(k, blow, count, 3 * i + r, 3 * j + r)
+        for q in range(count):
+            tolerance = GROUP_ERROR * _coupling_scale(W, j, classes[q].first)
             for s in range(3):
-                difference = _difference(k, blow, 3 * i + r, 3 * j + r, s, q)
-                if not abs(difference) <= tolerance:
+                if not abs(sums[3 * q + s]) <= tolerance:
                     return False
     return True
 
 
 @kernel
-def _difference(k, blow, a, c, s, q):
-    """Return the difference of rows `a` and `c` of W in component `s`, summed over class `q`.
+def _sum_differences(k, blow, count, a, c):
+    """Write the differences of rows `a` and `c` of W, summed over each class.
 
-    If it is the class of these rows, with the members that leave it.
+    The class of these rows has its members that leave it, too.
     """
-    contact, row, other, total = blow.contacts.contact, blow.clean[a], blow.clean[c], 0.0
-    own = contact[c // 3].of_class == q
+    contact, row, other, sums = blow.contacts.contact, blow.clean[a], blow.clean[c], blow.sums
+    for q in range(3 * count):
+        sums[q] = 0.0
+    own = contact[c // 3].of_class
     for b in range(k):
-        if contact[b].of_class == q or (own and contact[b].of_class < 0):
-            total += row[3 * b + s] - other[3 * b + s]
-    return total
+        q = contact[b].of_class if contact[b].of_class >= 0 else own
+        for s in range(3):
+            sums[3 * q + s] += row[3 * b + s] - other[3 * b + s]
 
 
 @kernel
@@ -193,15 +195,27 @@ def couple(blow, a, b, out):
     """Write W between the members a and b of a group, classes p and q: sum_ij W_ij / (m_p m_q)."""
     W, contact, k = blow.clean, blow.contacts.contact, blow.impact[0].k
     p, q = blow.members[a], blow.members[b]
-    size = blow.classes[p].members * blow.classes[q].members
+    first, other = blow.classes[p], blow.classes[q]
+    size = first.members * other.members
+    end_p, end_q = _end_of_class(k, contact, p, first), _end_of_class(k, contact, q, other)
     for r in range(3):
         for s in range(3):
             total = 0.0
-            for i in range(k):
-                for j in range(k if contact[i].of_class == p else 0):
+            for i in range(first.first, end_p):
+                for j in range(other.first, end_q if contact[i].of_class == p else 0):
                     if contact[j].of_class == q:
                         total += W[3 * i + r, 3 * j + s]
             out[3 * a + r, 3 * b + s] = total / size
+
+
+@kernel
+def _end_of_class(k, contact, q, one):
+    """Return the number after that of the last contact of class `q`."""
+    found, i = 0, one.first
+    while i < k and found < one.members:
+        found += 1 if contact[i].of_class == q else 0
+        i += 1
+    return i
 
 
 @kernel

@@ -211,6 +211,7 @@ class BlowWork(NamedTuple):
     classes: np.recarray  # (K,) CLASS
     members: np.ndarray  # (K,) int64, classes of a group
     stack: np.ndarray  # (K,) int64
+    sums: np.ndarray  # (3K,) of a row of W over each class
     result: o.MultipleResult
 
 
@@ -245,7 +246,7 @@ def new_multiple_workspace(capacity: int) -> MultipleWorkspace:
     contacts = o.CornerContacts(table(o.CORNER_CONTACT, k), np.zeros((n, n)), np.zeros(n))
     blow = BlowWork(
         impact=table(BLOW, 1), contacts=contacts, clean=np.zeros((n, n)), classes=table(CLASS, k),
-        members=whole(k), stack=whole(k), result=o.new_multiple_result(k),
+        members=whole(k), stack=whole(k), sums=np.zeros(n), result=o.new_multiple_result(k),
     )  # fmt: skip
     return MultipleWorkspace(work, blow)
 

@@ -46,7 +46,7 @@ def begin_step(system, active, now, clocks, work, islands):
         if contact.other >= 0:
             contact.other = local(islands, contact.other)
         islands.contact_states[slot] = active.contact_states[c]
-        if contact_state.step != clocks[0].step:  # in the last step nothing was near
+        if contact_state.step != plan.number:  # in the last piece nothing was near
             contact_state.leaving = 0
     plan.kept = 0
     for i in range(active.count[0]):
@@ -55,7 +55,7 @@ def begin_step(system, active, now, clocks, work, islands):
             plan.kept += 1
     if plan.joined >= 0:
         enter_joined(system, islands.joined)
-    plan.at, plan.entered, plan.planned = 0, 0, 1
+    plan.at, plan.entered, plan.planned, plan.busy = 0, 0, 1, 0
     work.step[0].impacts, work.step[0].owed, work.step[0].whole = clocks[0].impacts, 0.0, 0
     islands.clock[0] = clocks[0]
     return READY
@@ -142,7 +142,7 @@ def enter(part, own, active, work, islands, clock):
     clock.now, clock.at_once, step.spent, step.tries = step.begin, 0, 0.0, 0
     step.first_touch, step.first_event = clock.touched, clock.event
     work.pair.state[0].searches = 0
-    islands.plan[0].entered = 1
+    islands.plan[0].entered, islands.plan[0].trials = 1, clock.trials
 
 
 @kernel
@@ -241,8 +241,8 @@ def leave(own, islands):
 
 
 @kernel
-def end_step(system, active, now, number, work, islands):
-    """Write all islands back at the end of step `number`; move the bodies in free flight with nothing near."""
+def end_step(system, active, now, work, islands):
+    """Write all islands back at the end of the step; move the bodies in free flight with nothing near."""
     plan, member, length = islands.plan[0], islands.member, work.step[0].length
     for b in range(system.bodies.shape[0]):
         if member[b].kind == FLIES:
@@ -256,7 +256,7 @@ def end_step(system, active, now, number, work, islands):
     for slot in range(plan.used):
         contact_state = active.contact_states[islands.which[slot]]
         active.contact_states[islands.which[slot]] = islands.contact_states[slot]
-        contact_state.step = number + 1
+        contact_state.step = plan.number + 1
     for i in range(plan.kept):
         active.points[i] = islands.points[1, i]
     active.count[0] = plan.kept
