@@ -6,7 +6,7 @@ from carom._compiled.decorators import kernel
 
 #: columns with numbers in the rows that are subtracted are listed where they are fewer than one in so many
 FEW_COLUMNS = 4
-MANY_ROWS = 64  # rows: from here on sums of four are made at once
+MANY_ROWS = 4  # rows: from here on sums of four are made at once
 
 
 @kernel

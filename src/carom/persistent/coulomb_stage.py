@@ -163,7 +163,9 @@ def newton(k, hg, bounds, idle, group):
     push, slip = largest(k, group), 0.0
     for i in range(k):
         slip = max(slip, max(abs(group.u[3 * i + 1]), abs(group.u[3 * i + 2])))
-    enough = max(limits.EQUATION_ERROR, rough) * push + (LAST_DIGIT * slip / hg if hg > 0.0 else 0.0)
+    enough = max(limits.EQUATION_ERROR, rough) * push + (
+        LAST_DIGIT * slip / hg if hg > 0.0 else 0.0
+    )
     size = write_equations(k, n, hg, idle, group)
     for _ in range(STAGE_ITERATIONS):
         if size <= enough:
