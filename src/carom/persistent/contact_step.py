@@ -121,10 +121,9 @@ def step_group(model, data, method, label, h):
 
     Return the work of loads and of friction, and a status.
     """
-    work, group, clock, order = data.work, data.group, data.clocks[0], model.controls.order
-    search = work.search[0]
+    work, search = data.work, data.work.search[0]
     k, rate, push, powers, _ = first_stage(model, data, label)
-    clock.contact_steps += 1
+    data.clocks[0].contact_steps += 1
     work.step[0].since += 5.0 * k * stages_within(method)
     if h * rate <= STIFF_SLIP and not (search.stiff == 1 and search.again == 1):
         k, applied, friction = explicit_member(model, data, method, label, h, powers)
@@ -140,9 +139,21 @@ def step_group(model, data, method, label, h):
             note_unnamed(model, data, label, friction + applied, 0.0, push)
             return applied, friction, 0
         search.stiff = 1
+    return step_stiffly(model, data, method, label, h, (push, powers))
+
+
+@kernel
+def step_stiffly(model, data, method, label, h, start):
+    """Step one group by the implicit member, or in short steps by the closing one; return as `step_group`.
+
+    Where the error of a short closing step is not allowed, as where slip turns, the implicit member makes it,
+    and the closing one if that has no solution. `start` has the greatest acceleration and the powers there.
+    """
+    search, order, (push, powers) = data.work.search[0], model.controls.order, start
+    applied, friction = 0.0, 0.0
     falls = 0.5 * h * h * max(push, greatest_first(model, data, label))
-    near = order > 0 and falls <= closing_size(model, data, label)
-    for turn in range(0 if near else 1, 3):
+    short = order > 0 and falls <= closing_size(model, data, label)
+    for turn in range(0 if short else 1, 3):
         closes = turn != 1
         A, E = (method.closing, method.closing_E) if closes else (method.stiff, method.stiff_E)
         first_modes(model.system, data, label)
@@ -163,8 +174,7 @@ def step_group(model, data, method, label, h):
         note_closed(model, data, label, falls)
         note_unnamed(model, data, label, friction + applied, h, push)
         friction -= lost_in_stop(model, data, label, friction + applied)
-        if order > 0:
-            search.order = 1 if changes else CLOSING_ORDER
+        search.order = 1 if changes else min(order, CLOSING_ORDER)
         return applied, friction, 0
     return applied, friction, CONSTRAINTS_LOST
 
