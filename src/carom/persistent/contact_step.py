@@ -26,7 +26,15 @@ from carom.model.actions import (
     EVENT_STOP,
     MODE_OPEN,
 )
-from carom.persistent.finish import check_end, copy_to_stage, note_modes, write_end
+from carom.persistent.finish import (
+    ENDS,
+    STAYS,
+    TURNS,
+    check_end,
+    copy_to_stage,
+    note_modes,
+    write_end,
+)
 from carom.persistent.members import explicit_member, implicit_member
 from carom.persistent.return_to_surfaces import note_undetermined
 from carom.persistent.rows import beyond_stop, bodies_of
@@ -146,8 +154,8 @@ def step_group(model, data, method, label, h):
 def step_stiffly(model, data, method, label, h, start):
     """Step one group by the implicit member, or in short steps by the closing one; return as `step_group`.
 
-    Where the error of a short closing step is not allowed, as where slip turns, the implicit member makes it,
-    and the closing one if that has no solution. `start` has the greatest acceleration and the powers there.
+    Where slip turns and the error of a short closing step is not allowed, the implicit member makes it, and the
+    closing one if that has no solution. `start` has the greatest acceleration and the powers there.
     """
     search, order, (push, powers) = data.work.search[0], model.controls.order, start
     applied, friction = 0.0, 0.0
@@ -157,15 +165,14 @@ def step_stiffly(model, data, method, label, h, start):
         closes = turn != 1
         A, E = (method.closing, method.closing_E) if closes else (method.stiff, method.stiff_E)
         first_modes(model.system, data, label)
-        ended, turned, applied, friction = end_implicitly(
-            model, data, (A, closes), label, h, powers
-        )
+        ended, does, applied, friction = end_implicitly(model, data, (A, closes), label, h, powers)
         if not ended:
             continue
-        changes = order > 0 and (turned or opens(data, label))
+        does = ENDS if opens(data, label) else does
+        changes = order > 0 and does != STAYS
         if changes or not closes:
             note_errors(model, data, E, label, 0, h)
-        if turn == 0 and changes and not is_allowed(model, data, label):
+        if turn == 0 and does == TURNS and not is_allowed(model, data, label):
             continue
         if not closes:
             search.order = min(order, STIFF_ORDER)
@@ -218,24 +225,24 @@ def greatest_first(model, data, label):
 def end_implicitly(model, data, method, label, h, powers):
     """Step a group by a stiff method, and write its end, as `implicit_member` says.
 
-    Return whether there is one, whether slip begins, ends or turns, and the work of loads and of friction.
+    Return whether there is one, what slip does (`note_modes`), and the work of loads and of friction.
     """
     k, applied, friction = implicit_member(model, data, method, label, h, powers)
     (A, closes), member = method, data.group.bodies.member
     if k == 0:
-        return False, False, applied, friction
+        return False, STAYS, applied, friction
     if not closes:
         note_left(model, data, k)
-    turned = note_modes(model, data, k, h)
+    does = note_modes(model, data, k, h)
     joined, driven = write_end(model, data, label, k)
     applied += driven
     if not joined:
-        return False, False, applied, friction
+        return False, STAYS, applied, friction
     if closes and model.controls.order > 0:
         note_undetermined(model.system, data, k, label)
         copy_to_stage(members(data.work, label, member), data.work.trial, data.group, data.work)
     _, driven, rubbed = check_end(model, data, label, A.shape[0], h, False)
-    return True, turned, applied + driven, friction + rubbed
+    return True, does, applied + driven, friction + rubbed
 
 
 @kernel

@@ -34,7 +34,6 @@ from carom.persistent.springs import (
 )
 
 STAGE_ITERATIONS, HALVES, TOGETHER = 40, 6, 3
-UNKNOWN = (False, 0.0)  # forces that are not known, and are to be exact
 
 
 @kernel
@@ -51,7 +50,7 @@ def solve_stage(k, hg, known, group):
         if not renew_loads(k, 1.0, False, turn, group):
             return hg == 0.0 or not any_locks(k, hg, group)
     begin_loads(k, group)  # of slip that locks itself no friction is right: this one is small
-    forces_of_stage(k, hg, UNKNOWN, group)
+    forces_of_stage(k, hg, (False, 0.0), group)
     return False
 
 
@@ -93,7 +92,7 @@ def solve_forces(k, group):
             and group.problem.heading[i, 1] == 0.0
         ):
             group.problem.kind[i] = CONE
-    found = solve_stage(k, 0.0, UNKNOWN, group)
+    found = solve_stage(k, 0.0, (False, 0.0), group)
     note_accelerations(k, group)
     return found
 

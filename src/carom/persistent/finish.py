@@ -79,6 +79,9 @@ from carom.persistent.thresholds import (
     TURNED,
 )
 
+#: slip in a step
+STAYS, TURNS, ENDS = range(3)
+
 
 @unit
 def write_end(model, data, label, k) -> tuple[bool, float]:
@@ -117,9 +120,9 @@ def note_modes(model, data, k, h):
 
     What is on its disc at rest sticks: whether it slips is seen at the start of the next step. A slip that no
     friction could have stopped in the step goes on, whatever round-off has left of its force in a short step.
-    Return whether slip begins, ends or turns.
+    Return what slip does: STAYS, TURNS, or ENDS, if it begins, ends or turns by more than 60 degrees.
     """
-    active, group, controls, turned = data.active, data.group, model.controls, False
+    active, group, controls, does = data.active, data.group, model.controls, STAYS
     push = greatest_load(k, group)
     for i in range(k):
         closed_point, u, p = group.closed[i], group.u, group.p
@@ -137,12 +140,14 @@ def note_modes(model, data, k, h):
             continue
         slides = group.problem.kind[i] == SLIDING and slip > 0.0
         d1, d2 = u[3 * i + 1] / slip if slides else 0.0, u[3 * i + 2] / slip if slides else 0.0
-        turned = turned or (group.problem.mu[i] > 0.0 and math.hypot(d1 - b1, d2 - b2) > TURNED)
+        if group.problem.mu[i] > 0.0:
+            turn, both = math.hypot(d1 - b1, d2 - b2), slides == (b1 != 0.0 or b2 != 0.0)
+            does = max(does, ENDS if turn > 1.0 or not both else TURNS if turn > TURNED else STAYS)
         store_slip(model.system, active, closed_point, d1, d2, slip if slides else 0.0)
         if not is_torque(closed_point) and group.problem.mu[i] > 0.0:
             next_mode = MODE_SLIP if group.problem.kind[i] == SLIDING else MODE_STICK
             memory_of(model.system, active, closed_point).next = next_mode
-    return turned
+    return does
 
 
 @kernel

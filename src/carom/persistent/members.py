@@ -149,7 +149,7 @@ def implicit_stage(model, data, label, s, hg, closes):
         if change > 0.0:  # a body that stops has errors of the others
             change = change / size if size > 0.0 else math.inf
         # what the next iteration would change, if it changes by the same part of that of this one
-        left = change * change / last if 0.0 < change < last < math.inf else change
+        left = change * change / last if turn > 1 and change < last < math.inf else change
         settled = left <= LAST_CHANGE or (change <= ROUND_OFF and change >= 0.5 * last)
         settled = settled and rough <= EQUATION_ERROR
         rough = POSE_SHARE * change if turn > 0 and change < math.inf else 0.0

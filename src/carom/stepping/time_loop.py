@@ -124,7 +124,7 @@ def step_apart(model, data, method, islands) -> int:
         if code == 0:
             end_count(controls, own.work)
             note_gain(controls, step, data.watch[0])
-            note_busy(data.clocks[0].trials, own.active, own.work, plan)
+            note_busy(data.clocks[0], own.active, own.work, plan)
             parts.leave(own.active, islands)
     return REPEAT if code != 0 and retry_apart(model, data, islands, code) else code
 

@@ -13,6 +13,7 @@ from carom.persistent.active_set import regroup
 from carom.stepping.islands.joined import end_joined, enter_joined
 from carom.stepping.islands.layout import ASLEEP, FLIES
 from carom.stepping.islands.order import comes_before
+from carom.stepping.islands.pieces import wanted_trials
 from carom.stepping.islands.plan import READY, number, root, seek
 
 # of steps of given length: least number of active points of a crowd, and least average number per body
@@ -142,7 +143,7 @@ def enter(part, own, active, work, islands, clock):
     clock.now, clock.at_once, step.spent, step.tries = step.begin, 0, 0.0, 0
     step.first_touch, step.first_event = clock.touched, clock.event
     work.pair.state[0].searches = 0
-    islands.plan[0].entered, islands.plan[0].trials = 1, clock.trials
+    islands.plan[0].entered, islands.plan[0].trials = 1, wanted_trials(clock)
 
 
 @kernel

@@ -12,7 +12,7 @@ from carom._compiled.decorators import inlined, kernel
 from carom.geometry.thresholds import ROUND_OFF
 from carom.stepping.grid import begin_and_length
 
-MANY_TRIALS, FEW_TRIALS = 6, 2  # trial steps of an island of several groups in a piece
+BUSY_TRIALS, CALM_TRIALS = 6, 2  # trial steps of an island of several groups in a piece
 
 
 @inlined
@@ -36,9 +36,9 @@ def end_piece(grid, controls, clock, length, islands):
     _, whole = begin_and_length(grid, controls.duration, clock.step)
     plan = islands.plan[0]
     plan.number += 1
-    if plan.busy >= MANY_TRIALS:
+    if plan.busy >= BUSY_TRIALS:
         plan.piece = 0.5 * length
-    elif plan.busy <= FEW_TRIALS:
+    elif plan.busy <= CALM_TRIALS:
         plan.piece = 2.0 * length
     plan.done += length
     if plan.done < (1.0 - ROUND_OFF) * whole:
@@ -48,13 +48,23 @@ def end_piece(grid, controls, clock, length, islands):
 
 
 @kernel
-def note_busy(trials, active, work, plan):
+def wanted_trials(clock):
+    """Return the number of trial steps so far that are not halves of others.
+
+    Bodies that hardly part are unsure to have touched, whatever shares their island: steps are halved, and the
+    next one is, too.
+    """
+    return clock.trials - 2 * clock.cuts
+
+
+@kernel
+def note_busy(clock, active, work, plan):
     """Note how many trial steps an island took if several of its groups move."""
     first = -1
     for i in range(active.count[0]):
         label = work.body[active.points[i].body].label
         if active.points[i].rest == 0 and label != first:
             if first >= 0:
-                plan.busy = max(plan.busy, trials - plan.trials)
+                plan.busy = max(plan.busy, wanted_trials(clock) - plan.trials)
                 return
             first = label
