@@ -209,23 +209,42 @@ def beside_face(system, contact, state, near):
 def stays_beside_face(system, data, contact, smooth, tiny, bounds):
     """Return whether faces of boxes show that two solids stay apart in the trial step.
 
-    If the motion is `smooth` and the face the same, the cubic with the gap and rate of both ends decides, to
-    `tiny`: its control points are F(h/3), of the start and back from the end, with a = 0. Else the plane must
+    If the motion is `smooth`, the cubic with the gap and rate of both ends beside one face decides, to `tiny`:
+    its control points are F(h/3), of the start and back from the end, with a = 0. Of two parallel faces now one
+    has more room, now the other, by round-off: that of the start is followed to the end. Else the plane must
     separate them at both ends, for the bounds to hold on the way from there.
     """
     start, end, h = data.state, data.work.trial, data.work.search[0].dt
     plane, face, room = widest_face(system, contact, start)
-    other, last, left = widest_face(system, contact, end)
-    if not min(room, left) >= -tiny:
+    if not room >= -tiny:
         return False
-    if smooth and plane[1] == other[1] and face == last:
-        side, third = plane[1] - OF_A, h / 3.0
-        frame = frame_of(contact, side, plane[0], start)
-        if least_gap(system, contact, frame, start, third, 0.0) >= -tiny:
-            frame = frame_of(contact, side, other[0], end)
-            if least_gap(system, contact, frame, end, -third, 0.0) >= -tiny:
-                return True
+    if smooth and stays_beside_one(system, contact, (plane, face), (start, end), h, tiny):
+        return True
+    other, _, left = widest_face(system, contact, end)
     if not min(room, left) > 0.0:
         return False
     time = time_beside(system, contact, plane, start, bounds, h)
     return time >= h or time + time_beside(system, contact, other, end, bounds, -h) >= h
+
+
+@kernel
+def stays_beside_one(system, contact, beside, states, h, tiny):
+    """Return whether the cubic of the gap beside a face, of both states, is nowhere below -`tiny`."""
+    (plane, face), (start, end), third = beside, states, h / 3.0
+    side = plane[1] - OF_A
+    frame = frame_of(contact, side, plane[0], start)
+    if not least_gap(system, contact, frame, start, third, 0.0) >= -tiny:
+        return False
+    frame = frame_of(contact, side, normal_of(system, contact, side, face, end), end)
+    if not least_gap(system, contact, frame, end, 0.0, 0.0) >= -tiny:
+        return False
+    return least_gap(system, contact, frame, end, -third, 0.0) >= -tiny
+
+
+@kernel
+def normal_of(system, contact, side, face, state):
+    """Return the normal of a face of a box, towards the first solid; `face` is a number of `widest_face`."""
+    solid = contact.solid if side == 0 else contact.other_solid
+    _, q = pose_of(system.solids[solid], contact.body if side == 0 else contact.other, state)
+    f, k = (1.0, face) if face < 3 else (-1.0, face - 3)
+    return rotate(q, (f if k == 0 else 0.0, f if k == 1 else 0.0, f if k == 2 else 0.0))
