@@ -112,11 +112,11 @@ def kept() -> list[dict]:
     return json.loads(ROWS.read_text(encoding="utf-8")) if ROWS.exists() else []
 
 
-def is_marked(test: str) -> bool:
-    """Whether a test is still there, in a file in which tests verify something."""
-    path, _, name = test.partition("::")
+def is_stated(row: dict) -> bool:
+    """Whether the test of a row is still there, in a file that states the equation of the row."""
+    path, _, name = row["test"].partition("::")
     text = (ROOT / path).read_text(encoding="utf-8") if (ROOT / path).exists() else ""
-    return "verifies(" in text and f"def {name}(" in text
+    return f"def {name}(" in text and row["equation"] in text
 
 
 def update(path: Path, new: list[dict]) -> None:
@@ -128,7 +128,7 @@ def update(path: Path, new: list[dict]) -> None:
     where = f"{facts['processor']}; {facts['system']}; {versions}"
     old = json.loads(path.read_text(encoding="utf-8")) if path.exists() else []
     ran = {row["test"] for row in new}
-    rows = {key(row): row for row in old if row["test"] not in ran and is_marked(row["test"])}
+    rows = {key(row): row for row in old if row["test"] not in ran and is_stated(row)}
     for row in new:
         row |= {"date": facts["date"], "machine": where}
         other = rows.get(key(row))
