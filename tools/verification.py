@@ -164,6 +164,10 @@ def missing() -> dict[str, list[str]]:
 
 
 HEAD = """\
+---
+html_theme.sidebar_secondary.remove: true
+---
+
 # Verification
 
 What the tests verify: for each feature its right value, where this value comes from, the error that a test
@@ -197,20 +201,25 @@ functions that state scenes and of `simulate`, and of each word of `method`, `im
 
 def page() -> str:
     """Return the text of the page."""
-    rows = kept()
+    rows, named = kept(), features()
     verified = {}
     for row in rows:
         if not validated(row):
             verified.setdefault(row["feature"], []).append(row)
     machines = dict.fromkeys(row["machine"] for row in rows)
     tests = len({row["test"] for row in rows})
-    parts = [HEAD, f"{len(verified)} features, {tests} tests. Machine: {'. '.join(machines)}.\n"]
+    latest = max((row["date"] for row in rows), default="")
+    parts = [
+        HEAD,
+        f"{len(verified)} features, {tests} tests, run on {latest} where a row has no other date. "
+        f"Machine: {'. '.join(machines)}.\n",
+    ]
     for name, title in TITLES.items():
-        here = [row for feature in features().get(name, ()) for row in verified.get(feature, ())]
+        here = [row for feature in named.get(name, ()) for row in verified.get(feature, ())]
         if here:
-            parts.append(f"## {title}\n\n{table(here)}")
+            parts.append(f"## {title}\n\n{table(here, latest)}")
     measured = [row for row in rows if validated(row)]
-    parts += [VALIDATED, table(measured)] if measured else []
+    parts += [VALIDATED, table(measured, latest)] if measured else []
     of_pages = [f"- what is on [{name}](api/{name}.rst): {why}" for name, why in NO_ROWS_OF.items()]
     parts.append(
         WITHOUT + "\n" + "\n".join([*of_pages, *(f"- `{n}`: {why}" for n, why in NO_ROW.items())])
@@ -220,19 +229,26 @@ def page() -> str:
     return "\n".join(parts).rstrip() + "\n"
 
 
-def table(rows: list[dict]) -> str:
-    """Return rows as a table."""
+def words(test: str) -> str:
+    """Return the name of a test in words: ``mechanisms/belt: tensions and bearings``."""
+    file, _, name = test.removeprefix("tests/").partition("::")
+    return f"{file.replace('test_', '').removesuffix('.py')}: {name.removeprefix('test_').replace('_', ' ')}"
+
+
+def table(rows: list[dict], latest: str) -> str:
+    """Return rows as a table, with the date of those that are older than the latest."""
     lines = [
-        "| feature | right value | source | reached | asked | test | date |",
-        "| --- | --- | --- | --- | --- | --- | --- |",
+        "| feature | right value | source | reached | asked | test |",
+        "| --- | --- | --- | --- | --- | --- |",
     ]
+    above = ""
     for row in rows:
-        rel = " rel." if row["relative"] else ""
-        file, _, name = row["test"].removeprefix("tests/").partition("::")
-        cases = f" ({row['cases']} cases)" if row["cases"] > 1 else ""
+        name = "" if row["feature"] == above else f"`{row['feature']}`"
+        above, rel = row["feature"], " rel." if row["relative"] else ""
+        cases = f", {row['cases']} cases" if row["cases"] > 1 else ""
         cells = (
-            f"`{row['feature']}`", row["equation"], row["source"], f"{row['reached']:.0e}{rel}",
-            f"{row['asked']:.0e}", f"{file}, {name}{cases}", row["date"],
+            name, row["equation"], row["source"], f"{row['reached']:.0e}{rel}", f"{row['asked']:.0e}",
+            f"{words(row['test'])}{cases}{'' if row['date'] == latest else ', ' + row['date']}",
         )  # fmt: skip
         lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
     return "\n".join(lines) + "\n"
