@@ -246,8 +246,9 @@ def table(rows: list[dict], latest: str) -> str:
         name = "" if row["feature"] == above else f"`{row['feature']}`"
         above, rel = row["feature"], " rel." if row["relative"] else ""
         cases = f", {row['cases']} cases" if row["cases"] > 1 else ""
+        digits = ".2g" if validated(row) else ".0e"
         cells = (
-            name, row["equation"], row["source"], f"{row['reached']:.0e}{rel}", f"{row['asked']:.0e}",
+            name, row["equation"], row["source"], f"{row['reached']:{digits}}{rel}", f"{row['asked']:{digits}}",
             f"{words(row['test'])}{cases}{'' if row['date'] == latest else ', ' + row['date']}",
         )  # fmt: skip
         lines.append("| " + " | ".join(cell.replace("|", "\\|") for cell in cells) + " |")
