@@ -6,7 +6,7 @@ BIN := $(VENV)/bin
 export PYTHONDONTWRITEBYTECODE =
 marked = $(shell grep -rlE --include='test_*.py' 'mark\.($(1))\b' tests)
 
-.PHONY: paper test test-all lint docs bench history release-check wheel clean
+.PHONY: paper test test-all verify lint docs bench history release-check wheel clean
 
 $(VENV)/installed-%: pyproject.toml
 	$(PYTHON) -m venv $(VENV)
@@ -34,6 +34,9 @@ test-all: test ## the slow tests too, all nudged, and a part of all for another 
 	$(BIN)/python -m pytest -n auto -m slow $(call marked,slow|few)
 	for units in 1 -1 3; do CAROM_TEST_NUDGE=$$units $(TESTS) -m "not slow" || exit 1; done
 	NUMBA_CPU_NAME=generic NUMBA_CPU_FEATURES= $(TESTS) -m processors $(call marked,processors)
+
+verify: $(VENV)/installed-test ## the tests of the verification manual, whose rows and page they write (docs/verification.md)
+	$(TESTS) -m "verifies and not slow" --verified docs/_static/verification.json
 
 lint: $(VENV)/installed-test
 	$(BIN)/ruff check --fix .

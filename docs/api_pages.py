@@ -21,6 +21,7 @@ CALLED = {
     "Gear", "Coupling", "Driver", "Rows",
     "Spring", "Force", "Torque", "Bushing", "JointSpring", "JointForce", "Actuator", "PositionServo",
     "VelocityServo", "JointFriction",
+    "PointOnCurve", "CurveOnPoint", "Curve", "Spline", "Profile", "Friction", "Look",
     "Drive", "JointInertia", "BeltStrand", "CurveSpring", "UserForce", "Drag", "Wind", "Magnus", "Buoyancy",
 }  # fmt: skip
 

@@ -66,7 +66,8 @@ html_title = "carom"
 html_logo = html_favicon = "_static/logo.svg"  # docs/pictures/logo.py
 html_static_path = ["_static"]
 html_css_files = ["carom.css", "gallery.css"]
-_ALONE = ("index", "start", "notation", "benchmarks", "comparison", "limits", "changes", "cite")
+_ALONE = ("index", "start", "notation", "verification", "benchmarks", "comparison")
+_ALONE += ("limits", "support", "changes", "cite")
 html_sidebars = {page: [] for page in _ALONE}  # pages without others beside them
 html_theme_options = {
     "logo": {"text": "carom"},  # beside the mark

@@ -4,7 +4,7 @@ No process starts a second one that compiles for it: all processors have work, a
 kernels.
 
 ``HYPOTHESIS_PROFILE=search pytest ...`` looks for others. ``CAROM_TEST_NUDGE=1 pytest ...`` moves all bodies
-by a unit in the last place (`nudge.py`).
+by a unit in the last place (`nudge.py`). ``pytest --verified FILE`` writes what tests verify (`verified.py`).
 """
 
 import gc
@@ -18,6 +18,12 @@ from hypothesis import settings
 
 import nudge
 from carom._compiled import notice
+from verified import (  # noqa: F401, hooks
+    pytest_addoption,
+    pytest_runtest_call,
+    pytest_runtest_logreport,
+    pytest_sessionfinish,
+)
 
 notice.silence()  # tests look at what is on stderr
 settings.register_profile("same", derandomize=True)

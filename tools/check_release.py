@@ -1,8 +1,9 @@
 """Build wheel and sdist, look at what is in them, install the wheel in an empty environment and run it.
 
-    python tools/check_release.py [--out out/release] [--no-install]
+    python tools/check_release.py [--out out/release] [--no-install] [--python python3.12 python3.13]
 
-Needs `build` and the package index. The install compiles everything from nothing: some minutes.
+Needs `build` and the package index. The install compiles everything from nothing: some minutes, with each of
+the interpreters (default: that which runs this).
 """
 
 from __future__ import annotations
@@ -94,10 +95,10 @@ def look(wheel: Path, sdist: Path) -> list[str]:
     return faults + sdist_faults(names, package)
 
 
-def use(wheel: Path, out: Path) -> None:
+def use(wheel: Path, out: Path, interpreter: str) -> None:
     """Install the wheel with carom[paper] alone, from wheels only, and run the command."""
     place = out / "environment"
-    subprocess.run([sys.executable, "-m", "venv", "--clear", place], check=True)
+    subprocess.run([interpreter, "-m", "venv", "--clear", place], check=True)
     python, carom = place / "bin" / "python", place / "bin" / "carom"
     install = [
         python,
@@ -126,6 +127,7 @@ def main() -> int:
     this = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     this.add_argument("--out", type=Path, default=ROOT / "out" / "release")
     this.add_argument("--no-install", action="store_true", help="only build and look")
+    this.add_argument("--python", nargs="+", default=[sys.executable], help="interpreters to try")
     given = this.parse_args()
     out = given.out.resolve()
     out.mkdir(parents=True, exist_ok=True)
@@ -133,8 +135,9 @@ def main() -> int:
     faults = look(wheel, sdist)
     for fault in faults:
         print(fault, file=sys.stderr)
-    if not faults and not given.no_install:
-        use(wheel, out)
+    for interpreter in () if faults or given.no_install else given.python:
+        print(f"with {interpreter}:", flush=True)
+        use(wheel, out, interpreter)
     print("all well" if not faults else f"{len(faults)} found wrong")
     return int(bool(faults))
 

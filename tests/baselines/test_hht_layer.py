@@ -9,15 +9,26 @@ from carom.baselines import (
     hht_alpha_layer,
 )
 from carom.impact.geometry import NormalMotion
+from verified import agree, verifies
 
 LAYER = dict(mass=0.16, width=1e-3, penetration=0.8)
 SPEED = np.sqrt(2 * 9.81 * 0.4)  # the sphere dropped from 0.4 m
 
 
+@verifies(
+    "baselines.first_completing_steps",
+    "at least seven steps",
+    "publication: Natsiavas, Passas and Paraskevopoulos",
+)
+@verifies(
+    "baselines.completing_steps",
+    "at least seven steps",
+    "publication: Natsiavas, Passas and Paraskevopoulos",
+)
 def test_first_runs_with_seven_steps():
     """The paper: "at least seven steps before it can run" (e = 1, delta = 0.8)."""
-    assert first_completing_steps(SPEED, 1.0, penetration=0.8) == 7
-    assert completing_steps(SPEED, 1.0, penetration=0.8) == tuple(range(7, 21))
+    agree(first_completing_steps(SPEED, 1.0, penetration=0.8), 7)
+    agree(completing_steps(SPEED, 1.0, penetration=0.8), range(7, 21))
 
 
 def test_fewer_steps_leave_through_zero():
@@ -40,6 +51,11 @@ def test_numerical_damping_only_jumps_over_the_layer(alpha):
     assert run.velocity_error > 1.0
 
 
+@verifies(
+    "baselines.hht_alpha_layer",
+    "errors of HHT-alpha in the layer",
+    "other program: the same scheme, written independently",
+)
 @pytest.mark.parametrize(
     ("steps", "error"), [(8, 2.63), (20, 0.158), (40, 3.6e-2), (80, 8.9e-3), (320, 5.5e-4)]
 )
@@ -48,16 +64,17 @@ def test_error_of_the_velocity(steps, error):
     run = hht_alpha_layer(SPEED, 1.0, steps=steps, **LAYER)
     assert run.completed
     assert run.t.size == steps + 1
-    assert run.velocity_error == pytest.approx(error, rel=0.01)
+    agree(run.velocity_error, error, rtol=0.01)
 
 
+@verifies("baselines.hht_alpha_layer", "order 2", "closed form")
 @pytest.mark.parametrize("alpha", [0.0, 0.1, 1 / 3])
 def test_order_two_for_a_symmetric_passage(alpha):
     errors = [
         hht_alpha_layer(SPEED, 1.0, steps=n, alpha=alpha, **LAYER).velocity_error
         for n in (160, 320, 640)
     ]
-    assert np.log2(np.divide(errors[:-1], errors[1:])) == pytest.approx(2.0, abs=0.1)
+    agree(np.log2(np.divide(errors[:-1], errors[1:])), 2.0, atol=0.1)
 
 
 def test_restitution_is_met_to_first_order():

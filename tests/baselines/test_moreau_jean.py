@@ -6,6 +6,7 @@ from baseline_scenes import die, sphere
 
 import carom
 from carom.baselines import moreau_jean
+from verified import agree, verifies
 
 FALL = np.sqrt(2 * 0.4 / 9.81)  # the sphere's first impact
 
@@ -91,12 +92,13 @@ def test_energy_of_a_die_never_grows():
     np.testing.assert_allclose(np.linalg.norm(run.orientation, axis=2), 1.0, atol=1e-14)
 
 
+@verifies("baselines.moreau_jean", r"rolls with $\tfrac57 v_0$", "closed form")
 def test_sphere_slides_then_rolls():
     """v0 = 1, mu = 0.2 on the plane: rolls with 5/7 v0 from t = 2 v0 / (7 mu g) on."""
     run = moreau_jean(sphere(0.0, drop=0.0, friction=0.2, velocity=(1, 0, 0)), 0.3, step=1e-3)
-    np.testing.assert_allclose(run.velocity[-1, 0], [5 / 7, 0, 0], atol=1e-3)
-    np.testing.assert_allclose(run.angular_velocity[-1, 0], [0, 50 / 7, 0], atol=1e-2)
-    assert abs(run.gap[-1]) < 1e-4
+    agree(run.velocity[-1, 0], [5 / 7, 0, 0], atol=1e-3)
+    agree(run.angular_velocity[-1, 0], [0, 50 / 7, 0], atol=1e-2)
+    agree(run.gap[-1], 0.0, atol=1e-4)
 
 
 def test_shapes_are_those_of_a_solution():

@@ -6,6 +6,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from carom.baselines import solve_one_contact
+from verified import agree, verifies
 
 entry = st.floats(-2.0, 2.0, allow_nan=False).map(lambda x: round(x, 6))
 factor = st.lists(entry, min_size=9, max_size=9).map(lambda x: np.reshape(x, (3, 3)))
@@ -58,13 +59,16 @@ def test_empty_direction_takes_no_impulse(mu):
     assert cone_residual(W, c, mu, p) < 1e-14
 
 
+@verifies(
+    "baselines.solve_one_contact", "diagonal $W$: open, stick, slip on the cone", "closed form"
+)
 def test_open_stick_and_slip():
     """Diagonal W: open if c_n >= 0; stick if |c_t|/W_tt <= mu |c_n|/W_nn; else slip at the cone."""
     W = np.diag([1.0, 3.5, 3.5])
     assert np.array_equal(solve_one_contact(W, [0.1, 1.0, 1.0], 0.5), np.zeros(3))
-    np.testing.assert_allclose(solve_one_contact(W, [-1, 0.35, 0], 0.2), [1, -0.1, 0], atol=1e-15)
+    agree(solve_one_contact(W, [-1, 0.35, 0], 0.2), [1, -0.1, 0], atol=1e-15)
     slip = solve_one_contact(W, [-1.0, 2.1, 2.8], 0.2)
-    np.testing.assert_allclose(slip, [1.0, -0.12, -0.16], rtol=1e-13)
+    agree(slip, [1.0, -0.12, -0.16], rtol=1e-13)
 
 
 def test_residual_sees_a_wrong_impulse():

@@ -1,11 +1,11 @@
 """Rows of dominoes: groups of many points with tolerances, and what is said of time-stepping steps."""
 
-import numpy as np
 import pytest
 
 import carom
 from carom.results.accuracy import sentences
 from carom.stepping.energy_balance import new_watch
+from verified import agree, verifies
 
 
 def row(n, apart):
@@ -21,13 +21,14 @@ def row(n, apart):
     return scene
 
 
+@verifies("simulate(rtol=)", "a row of dominoes by two tolerances", "invariant")
 @pytest.mark.parametrize(("n", "end"), [(8, 0.5), (10, 0.5), (14, 0.66)])
 def test_a_row_moves_from_event_to_event(n, end):
     # 32 to 56 points on the floor, of bodies that are groups of their own until they meet. Two tolerances
     # agree to 1e-11 m; time-stepping steps, which it took before, were .4 mm off
     places = [carom.simulate(row(n, 0.02), end, rtol=rtol, save_at=end) for rtol in (1e-8, 1e-10)]
     assert all(s.stats["whole_steps"] == 0 and not s.warnings for s in places)
-    assert np.abs(places[0].position[-1] - places[1].position[-1]).max() < 10 * 0.05 * 1e-8
+    agree(places[0].position[-1], places[1].position[-1], atol=10 * 0.05 * 1e-8)
 
 
 def test_what_a_crowd_is_off_is_said():

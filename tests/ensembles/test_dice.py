@@ -9,8 +9,10 @@ from scipy.spatial.transform import Rotation
 
 from carom.cli import main
 from carom.studies.ensembles.dice import face_up, fairness
+from verified import agree, verifies
 
 
+@verifies("studies.ensembles.dice.face_up", "quarter turns of a die", "closed form")
 def test_faces_of_known_orientations():
     turns = {
         6: Rotation.identity(), 1: Rotation.from_euler("x", np.pi),
@@ -21,25 +23,30 @@ def test_faces_of_known_orientations():
     for face, turn in turns.items():
         for about in np.linspace(0.0, 6.0, 5):
             Q = (Rotation.from_euler("z", about) * turn).as_quat(scalar_first=True)
-            assert face_up(Q) == face
+            agree(face_up(Q), face)
     tilted = Rotation.from_euler("x", 0.01).as_quat(scalar_first=True)
     assert face_up([tilted, np.full(4, np.nan)]).tolist() == [0, 0]
 
 
+@verifies(
+    "studies.ensembles.dice.fairness",
+    r"$\chi^2$, its tail for five degrees, Wilson's intervals",
+    "closed form",
+)
 def test_fairness_in_numbers():
     """chi^2 = sum (n - 100)^2/100 = 8.72; Wilson at z = 1.96 for 120 of 600: .1700 to .2339."""
     counts = [120, 90, 110, 96, 84, 100]
     found = fairness(np.repeat(np.arange(1, 7), counts))
     assert found.counts.tolist() == counts
-    assert found.chi_square == pytest.approx(sum((n - 100) ** 2 for n in counts) / 100, rel=1e-12)
+    agree(found.chi_square, sum((n - 100) ** 2 for n in counts) / 100, rtol=1e-12)
     z, n, p = 1.959963984540054, 600, 0.2
     middle, half = p + z * z / (2 * n), z * np.sqrt(p * (1 - p) / n + z * z / (4 * n * n))
-    np.testing.assert_allclose(found.low[0], (middle - half) / (1 + z * z / n), rtol=1e-12)
-    np.testing.assert_allclose(found.high[0], (middle + half) / (1 + z * z / n), rtol=1e-12)
+    agree(found.low[0], (middle - half) / (1 + z * z / n), rtol=1e-12)
+    agree(found.high[0], (middle + half) / (1 + z * z / n), rtol=1e-12)
     # five degrees: P(> x) = erfc(sqrt(x/2)) + sqrt(2 x/pi) e^(-x/2) (1 + x/3)
     x = found.chi_square
     tail = erfc(np.sqrt(x / 2)) + np.sqrt(2 * x / np.pi) * np.exp(-x / 2) * (1 + x / 3)
-    assert found.p_value == pytest.approx(tail, rel=1e-10)
+    agree(found.p_value, tail, rtol=1e-10)
     with pytest.raises(ValueError, match="at least one"):
         fairness([0, 0])
 

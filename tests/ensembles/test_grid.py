@@ -7,6 +7,7 @@ from scipy.stats import uniform
 import carom
 from ensembles.ensemble_scenes import die
 from ensembles.test_ensemble import agrees
+from verified import agree, verifies
 
 MU, SPEEDS, LAWS = [0.0, 0.2, 0.5], [0.5, 1.0], ["newton", "stronge"]
 
@@ -21,6 +22,7 @@ def made():
     return carom.ensemble(die(), 0.15, step=2e-3, vary=vary, executor="serial")
 
 
+@verifies("Grid", "all combinations, the last value changes first", "closed form")
 def test_all_combinations(made):
     assert len(made) == 12
     assert list(made.grid) == ["die-ground.friction", "die.velocity.x", "die-ground.impact_law"]
@@ -30,6 +32,7 @@ def test_all_combinations(made):
         made.inputs["die-ground.impact_law"].tolist(),
     )  # fmt: skip
     assert list(seen) == [(mu, speed, law) for mu in MU for speed in SPEEDS for law in LAWS]
+    agree(made.inputs["die-ground.friction"], np.repeat(MU, 4))
     across = made.inputs["die.velocity"][:, 1]
     assert len(set(across.tolist())) == 12  # drawn for each run
     assert np.all(np.abs(across) <= 0.1)

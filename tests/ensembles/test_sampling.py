@@ -5,18 +5,24 @@ import pytest
 from scipy.stats import norm, uniform
 
 from carom.studies.ensembles.sampling import SAMPLING, UniformOrientation, draw
+from verified import agree, verifies
 
 
+@verifies(
+    "UniformOrientation",
+    r"$\mathrm E[q q^T] = \tfrac14 I$, $\mathrm E[\cos\vartheta] = -\tfrac12$",
+    "closed form",
+)
 def test_orientations_prefer_none():
     """E[q q^T] = 1/4 of the identity, and the angle t has the density (1 - cos t)/pi: E[cos t] = -1/2."""
     Q = draw({"q": UniformOrientation()}, 2**14, 1, "sobol")["q"]
-    np.testing.assert_allclose(np.linalg.norm(Q, axis=1), 1.0, atol=1e-15)
-    np.testing.assert_allclose(Q.T @ Q / len(Q), np.eye(4) / 4, atol=2e-3)
+    agree(np.linalg.norm(Q, axis=1), 1.0, atol=1e-15)
+    agree(Q.T @ Q / len(Q), np.eye(4) / 4, atol=2e-3)
     cosine = 2.0 * Q[:, 0] ** 2 - 1.0
-    assert abs(cosine.mean() + 0.5) < 2e-3
+    agree(cosine.mean() + 0.5, 0.0, atol=2e-3)
     # a fixed direction goes to all directions alike: thirds of cos have a third each
     z = 1.0 - 2.0 * (Q[:, 1] ** 2 + Q[:, 2] ** 2)
-    np.testing.assert_allclose(np.histogram(z, 3, (-1, 1))[0] / len(z), 1 / 3, atol=3e-3)
+    agree(np.histogram(z, 3, (-1, 1))[0] / len(z), 1 / 3, atol=3e-3)
 
 
 @pytest.mark.parametrize("sampling", SAMPLING)

@@ -21,6 +21,7 @@ from files.compare import derived_differences, differences
 from files.made_up import rewrite
 from files.scenes import pendulum, pile, push, slider
 from simulate.scenes import die
+from verified import agree, verifies
 
 TESTS = Path(__file__).parents[1]
 CHILD = """
@@ -95,6 +96,7 @@ def test_killed_process(name, late, tmp_path):
 ALLOWED = carom.Options(energy_tolerance=0.01)
 
 
+@verifies("resume", "a run that goes on is the whole run, bit for bit", "invariant")
 @pytest.mark.few(3)
 @pytest.mark.parametrize("fraction", [0.2, 0.8])
 @pytest.mark.parametrize(
@@ -116,6 +118,7 @@ def test_pendulum(fraction, settings, tmp_path):
     again = carom.resume(path)
     assert differences(again, whole) == []
     assert derived_differences(again, whole) == []
+    agree(again.position, whole.position)
 
 
 def test_interrupted_run_works_out_the_same(tmp_path):

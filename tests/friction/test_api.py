@@ -5,6 +5,7 @@ import pytest
 from contact_problems import dense, stack
 
 import carom
+from verified import agree, verifies
 
 
 def test_either_shape():
@@ -22,10 +23,11 @@ def test_either_shape():
     np.testing.assert_allclose(warm.velocity, flat.velocity, atol=1e-15)
 
 
+@verifies("solve_contacts", r"$P_t = -\mu P_n$ against slip", "closed form")
 def test_block_that_slides():
     solution = carom.solve_contacts(np.eye(3), (-0.1, 1.0, 0.0), 0.5)
-    np.testing.assert_allclose(solution.impulse, [[0.1, -0.05, 0.0]], rtol=1e-15)
-    np.testing.assert_allclose(solution.velocity, [[0.0, 0.95, 0.0]], atol=1e-16)
+    agree(solution.impulse, [[0.1, -0.05, 0.0]], rtol=1e-15)
+    agree(solution.velocity, [[0.0, 0.95, 0.0]], atol=1e-16)
     assert solution.message == "The contact problem was solved to its tolerance."
 
 

@@ -7,6 +7,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from carom.friction.layout import NOT_SOLVED, SOLVED
+from verified import agree, verifies
 
 # Rod at 60 degrees (m = L = 1), planar: what moves in t2 is nothing.
 ROD = np.array([[1.75, 1.299038105677, 0], [1.299038105677, 3.25, 0], [0, 0, 0]])
@@ -36,6 +37,9 @@ def least_slip(W, c, mu):
     return np.array([-(c[0] + W[0, 1:] @ p_t) / W[0, 0], *p_t])
 
 
+@verifies(
+    "solve_contacts", "one contact: the least slip of all", "own integration: scan and bisection"
+)
 @settings(max_examples=150, deadline=None)
 @given(seed=st.integers(0, 10**6), mu=st.sampled_from([0.05, 0.3, 1.0, 3.0, 10.0]))
 def test_against_a_scan(seed, mu):
@@ -51,7 +55,7 @@ def test_against_a_scan(seed, mu):
     else:
         expected = least_slip(W, c, mu)
     # |W| <= 30, least eigenvalue >= 1e-3: 1e5 roundings, and the bisection's own
-    np.testing.assert_allclose(solved.p, expected, rtol=1e-8, atol=1e-9)
+    agree(solved.p, expected, rtol=1e-8, atol=1e-9)
 
 
 @pytest.mark.plain

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 
 import carom
 from carom import GeneralizedSystem
+from verified import agree, verifies
 
 RING, TUBE = 2.0, 0.7
 
@@ -31,6 +32,11 @@ def torus():
     return GeneralizedSystem.from_sympy(q, v, metric=metric, position=[0.3, 0], velocity=[0.9, 0.8])
 
 
+@verifies(
+    "GeneralizedSystem",
+    r"torus: $\Gamma^\theta_{\varphi\varphi} = (R + r\cos\theta)\sin\theta/r$",
+    "closed form",
+)
 def test_affinities_are_those_of_the_metric():
     # Torus: Gamma^th_phph = (R + r cos) sin / r, Gamma^ph_thph = -r sin / (R + r cos).
     c, s = np.cos(0.3), np.sin(0.3)
@@ -38,7 +44,7 @@ def test_affinities_are_those_of_the_metric():
     expected = np.zeros((2, 2, 2))
     expected[0, 1, 1] = (RING + TUBE * c) * s / TUBE
     expected[1, 0, 1] = expected[1, 1, 0] = -TUBE * s / (RING + TUBE * c)
-    np.testing.assert_allclose(gamma, expected, rtol=0, atol=1e-14)
+    agree(gamma, expected, atol=1e-14)
 
 
 def test_geodesic_of_the_torus_keeps_clairauts_integral():
@@ -53,6 +59,7 @@ def test_geodesic_of_the_torus_keeps_clairauts_integral():
     assert errors[0] / errors[1] > 12.0
 
 
+@verifies("GeneralizedSystem", "autoparallels of the sphere are great circles", "closed form")
 @settings(max_examples=10, deadline=None)
 @given(st.floats(-1.0, 1.0), st.floats(-1.0, 1.0))
 def test_autoparallels_of_the_sphere_are_great_circles(a, b):
@@ -64,7 +71,7 @@ def test_autoparallels_of_the_sphere_are_great_circles(a, b):
     w = 0.4 * a * south + 0.8 * b * np.sin(q[0]) * east
     size = np.linalg.norm(w)
     expected = on_sphere(q) * np.cos(size) + w * np.sinc(size / np.pi)
-    np.testing.assert_allclose(on_sphere(end), expected, rtol=0, atol=1e-9)
+    agree(on_sphere(end), expected, atol=1e-9)
 
 
 _SPHERE = sphere()

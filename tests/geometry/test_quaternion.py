@@ -12,35 +12,41 @@ from numpy.testing import assert_allclose
 from scipy.spatial.transform import Rotation
 
 from carom.geometry import quaternion, rotation
+from verified import agree, verifies
 
 
 def scipy_rotation(q):
     return Rotation.from_quat(np.roll(q, -1, axis=-1))
 
 
+@verifies("geometry.quaternion.multiply", "associative law", "invariant")
+@verifies("geometry.quaternion.conjugate", "$q q^* = 1$", "invariant")
+@verifies("geometry.quaternion.rotate", "$R(ab) = R(a) R(b)$", "invariant")
+@verifies("geometry.quaternion.rotate_back", "$R^T R = 1$", "invariant")
 @moderate
 @given(quaternions(), quaternions(), quaternions(), components())
 def test_group_laws(a, b, c, v):
     product = quaternion.multiply
-    assert_allclose(product(product(a, b), c), product(a, product(b, c)), atol=ROUND)
-    assert_allclose(product(a, quaternion.conjugate(a)), [1, 0, 0, 0], atol=ROUND)
-    assert_allclose(
+    agree(product(product(a, b), c), product(a, product(b, c)), atol=ROUND)
+    agree(product(a, quaternion.conjugate(a)), [1, 0, 0, 0], atol=ROUND)
+    agree(
         quaternion.rotate(product(a, b), v),
         quaternion.rotate(a, quaternion.rotate(b, v)),
         atol=ROUND,
     )
-    assert_allclose(quaternion.rotate_back(a, quaternion.rotate(a, v)), v, atol=ROUND)
+    agree(quaternion.rotate_back(a, quaternion.rotate(a, v)), v, atol=ROUND)
 
 
+@verifies("geometry.quaternion.rotate", "rotation matrices", "other program: SciPy's Rotation")
 @moderate
 @given(quaternions(), components())
 def test_matrix_is_a_rotation_and_agrees_with_scipy(q, v):
     R = quaternion.matrix(q)
-    assert_allclose(R @ R.T, np.eye(3), atol=ROUND)
-    assert np.linalg.det(R) == pytest.approx(1.0, abs=ROUND)
-    assert_allclose(R, scipy_rotation(q).as_matrix(), atol=ROUND)
-    assert_allclose(R @ v, quaternion.rotate(q, v), atol=ROUND)
-    assert_allclose(quaternion.matrix(quaternion.from_matrix(R)), R, atol=ROUND)
+    agree(R @ R.T, np.eye(3), atol=ROUND)
+    agree(np.linalg.det(R), 1.0, atol=ROUND)
+    agree(R, scipy_rotation(q).as_matrix(), atol=ROUND)
+    agree(R @ v, quaternion.rotate(q, v), atol=ROUND)
+    agree(quaternion.matrix(quaternion.from_matrix(R)), R, atol=ROUND)
 
 
 @moderate

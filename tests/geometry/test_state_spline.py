@@ -10,6 +10,7 @@ from scipy.integrate import solve_ivp
 
 from carom.geometry import quaternion
 from carom.geometry.spline import interpolate
+from verified import agree, verifies
 
 
 def states():
@@ -52,6 +53,11 @@ def test_steady_rotation_is_exact_through_many_turns(Q, w, v, s):
     same_state(interpolate(s * h, 0.0, h, states[0], states[1]), states[2], 2e-12)
 
 
+@verifies(
+    "geometry.spline.interpolate",
+    r"turns about one axis: $\vartheta = \omega_0 t - t^2/2$",
+    "closed form",
+)
 def test_the_limit_of_the_fixed_chart_is_safe():
     # Turns about one axis at a changing rate, predicted and true turn on both sides of 2 rad and of
     # pi: the cubic in the angle (its second derivative constant) is exact.
@@ -64,12 +70,12 @@ def test_the_limit_of_the_fixed_chart_is_safe():
         )
         middle = interpolate(0.5, 0.0, 1.0, start, end)
         angle = 0.5 * rates[0] - 0.125  # theta = w0 t - t^2 / 2
-        assert_allclose(
+        agree(
             quaternion.matrix(middle[1]),
             quaternion.matrix(quaternion.exp(angle * axis)),
             atol=1e-14,
         )
-        assert_allclose(middle[3], turn * axis, atol=1e-13)
+        agree(middle[3], turn * axis, atol=1e-13)
 
 
 def test_a_parabola_is_exact():
@@ -121,6 +127,11 @@ def tumbling():
     return state
 
 
+@verifies(
+    "geometry.spline.interpolate",
+    "order 4, of velocities 3, for a tumbling body",
+    "own integration: SciPy",
+)
 def test_order_of_convergence_on_a_tumbling_body():
     # Cubic Hermite: h^4 in x and R, h^3 in their derivatives.
     state, errors = tumbling(), []
@@ -135,6 +146,6 @@ def test_order_of_convergence_on_a_tumbling_body():
             worst = np.maximum(worst, [np.abs(d).max() for d in differences])
         errors.append(worst)
     order = np.log2(np.array(errors[:-1]) / np.array(errors[1:]))
-    assert_allclose(order, np.broadcast_to([4.0, 4.0, 3.0, 3.0], order.shape), atol=0.25)
+    agree(order, np.broadcast_to([4.0, 4.0, 3.0, 3.0], order.shape), atol=0.25)
     # And the size: h = 0.05, W = 3 rad/s: (h W)^4 / 384 = 1.3e-6.
     assert errors[-1][1] < 3e-6

@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 from carom import resolve_impact
 from carom.studies.gradient import impact_derivative
 from carom.studies.gradient.blow import UPPER, blow
+from verified import agree, verifies
 
 coordinate = st.floats(-1.0, 1.0)
 
@@ -59,18 +60,19 @@ def test_slip_that_keeps_its_direction_is_that_of_routh():
     assert found.phases == 1
 
 
+@verifies("studies.gradient.impact_derivative", "stick: $P = W^{-1} (u^+ - u^-)$", "closed form")
 def test_a_point_that_sticks_takes_the_impulse_of_a_held_one():
     # u+ = (-e u_n, 0, 0), so P = W^-1 (u+ - u): Newton's law, whatever slip was on the way
     W, u, e = inverse_mass((0.3, -0.2, 0.5), (0.3, 0.5, 0.4)), np.array([-1.0, 0.02, 0.01]), 0.4
     found = blow(W, u, 2.0, e, 0)
     V = np.linalg.inv(W)
-    np.testing.assert_allclose(found.d[:3, 6:9], V @ np.diag([-(1 + e), -1, -1]), atol=1e-10)
-    np.testing.assert_allclose(found.d[:3, 10], V @ [1.0, 0, 0], atol=1e-10)
-    np.testing.assert_allclose(found.d[:3, 9], 0.0, atol=1e-10)
+    agree(found.d[:3, 6:9], V @ np.diag([-(1 + e), -1, -1]), atol=1e-10)
+    agree(found.d[:3, 10], V @ [1.0, 0, 0], atol=1e-10)
+    agree(found.d[:3, 9], 0.0, atol=1e-10)
     for k, (i, j) in enumerate(UPPER):
         dW = np.zeros((3, 3))
         dW[i, j] = dW[j, i] = 1.0
-        np.testing.assert_allclose(found.d[:3, k], -V @ dW @ found.impulse, atol=1e-9)
+        agree(found.d[:3, k], -V @ dW @ found.impulse, atol=1e-9)
 
 
 def test_slip_from_rest_has_no_derivative():

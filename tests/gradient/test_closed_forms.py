@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import carom
+from verified import agree, verifies
 
 g, r = 9.81, 0.1
 
@@ -19,6 +20,7 @@ def ball(height=0.4, e=0.7, mu=0.0, velocity=(0, 0, 0), spin=(0, 0, 0), mass=2.0
     return carom.simulate(scene, duration, step=1e-2)
 
 
+@verifies("sensitivities", r"$t_2 = \sqrt{2h/g}\,(1 + 2e)$ and its derivatives", "closed form")
 @pytest.mark.plain
 def test_a_ball_that_is_dropped():
     # t_1 = sqrt(2 h / g), t_2 = t_1 (1 + 2 e), u_k = -e^(k-1) sqrt(2 g h);
@@ -31,27 +33,24 @@ def test_a_ball_that_is_dropped():
     t1, v = np.sqrt(2 * h / g), np.sqrt(2 * g * h)
     assert len(run.impacts) == 2
     time = found.impact_time
-    np.testing.assert_allclose(time[:, z], [t1 / (2 * h), t1 / (2 * h) * (1 + 2 * e)], rtol=1e-11)
-    np.testing.assert_allclose(time[:, E], [0, 2 * t1], rtol=1e-11, atol=1e-13)
+    agree(time[:, z], [t1 / (2 * h), t1 / (2 * h) * (1 + 2 * e)], rtol=1e-11)
+    agree(time[:, E], [0, 2 * t1], rtol=1e-11, atol=1e-13)
     # gravity points down: g = -gravity_z
-    np.testing.assert_allclose(time[:, G], [t1 / (2 * g), t1 / (2 * g) * (1 + 2 * e)], rtol=1e-11)
-    np.testing.assert_allclose(found.velocity_before[:, 0, z], [-g / v, -e * g / v], rtol=1e-11)
-    np.testing.assert_allclose(found.velocity_after[:, 0, E], [v, 2 * e * v], rtol=1e-11)
-    np.testing.assert_allclose(
-        found.impulse[:, 0, M], [(1 + e) * v, (1 + e) * e * v], rtol=1e-11, atol=0
-    )
+    agree(time[:, G], [t1 / (2 * g), t1 / (2 * g) * (1 + 2 * e)], rtol=1e-11)
+    agree(found.velocity_before[:, 0, z], [-g / v, -e * g / v], rtol=1e-11)
+    agree(found.velocity_after[:, 0, E], [v, 2 * e * v], rtol=1e-11)
+    agree(found.impulse[:, 0, M], [(1 + e) * v, (1 + e) * e * v], rtol=1e-11, atol=0)
     t2, s = t1 * (1 + 2 * e), 0.8 - t1 * (1 + 2 * e)
     up = e**2 * v - g * s
-    np.testing.assert_allclose(found.final.velocity[0, 2, E], 2 * e * v + g * 2 * t1, rtol=1e-10)
-    np.testing.assert_allclose(
-        found.final.position[0, 2, E], 2 * e * v * s - up * 2 * t1, rtol=1e-10
-    )
+    agree(found.final.velocity[0, 2, E], 2 * e * v + g * 2 * t1, rtol=1e-10)
+    agree(found.final.position[0, 2, E], 2 * e * v * s - up * 2 * t1, rtol=1e-10)
     slope = e**2 * g / v * s - up * t2 / (2 * h)
-    np.testing.assert_allclose(found.final.position[0, 2, z], slope, rtol=1e-10)
-    np.testing.assert_allclose(found.final.position[0, 2, [0, 1, M]], 0.0, atol=1e-12)
-    np.testing.assert_allclose(found.final.position[0, :2, :2], np.eye(2), rtol=1e-14)
+    agree(found.final.position[0, 2, z], slope, rtol=1e-10)
+    agree(found.final.position[0, 2, [0, 1, M]], 0.0, atol=1e-12)
+    agree(found.final.position[0, :2, :2], np.eye(2), rtol=1e-14)
 
 
+@verifies("sensitivities", r"$v_x^+ = v_x - \mu (1 + e)\,v$ and its derivatives", "closed form")
 def test_a_ball_that_slides_through_its_impact():
     # P_t = mu P_n, P_n = (1 + e) m v: v_x+ = v_x - mu (1 + e) v, w_y+ = 5/2 mu (1 + e) v / r
     h, e, mu = 0.4, 0.7, 0.1
@@ -60,16 +59,14 @@ def test_a_ball_that_slides_through_its_impact():
     v = np.sqrt(2 * g * h)
     X, E, F = 0, found.columns["restitution"], found.columns["ball-floor.friction"]
     velocity, spin = found.final.velocity[0], found.final.angular_velocity[0]
-    np.testing.assert_allclose(velocity[0, [X, E, F]], [1, -mu * v, -(1 + e) * v], rtol=1e-10)
-    np.testing.assert_allclose(
-        spin[1, [E, F]], [2.5 * mu * v / r, 2.5 * (1 + e) * v / r], rtol=1e-10
-    )
+    agree(velocity[0, [X, E, F]], [1, -mu * v, -(1 + e) * v], rtol=1e-10)
+    agree(spin[1, [E, F]], [2.5 * mu * v / r, 2.5 * (1 + e) * v / r], rtol=1e-10)
     # what pushes sideways turns slip: P_y = -mu P_n v_y / v_x
-    np.testing.assert_allclose(velocity[1, 1], 1 - mu * (1 + e) * v / 3.0, rtol=1e-10)
-    np.testing.assert_allclose(found.impulse[0, 0, F], 0.0, atol=1e-10)
+    agree(velocity[1, 1], 1 - mu * (1 + e) * v / 3.0, rtol=1e-10)
+    agree(found.impulse[0, 0, F], 0.0, atol=1e-10)
     left = [q for q in found.margins if "slip at the end" in q.what]
-    np.testing.assert_allclose(left[0].value, 3 - 3.5 * mu * (1 + e) * v, rtol=1e-11)
-    np.testing.assert_allclose(left[0].reach[F], left[0].value / (3.5 * (1 + e) * v), rtol=1e-9)
+    agree(left[0].value, 3 - 3.5 * mu * (1 + e) * v, rtol=1e-11)
+    agree(left[0].reach[F], left[0].value / (3.5 * (1 + e) * v), rtol=1e-9)
 
 
 def test_a_ball_that_sticks_in_its_impact_rolls_off():

@@ -7,12 +7,16 @@ from hypothesis import strategies as st
 
 from carom.geometry import quaternion
 from carom.studies.identify import Recording, face_up, mean_error, squared_error, trajectory_error
+from verified import agree, verifies
 
 T = np.arange(5) / 10
 Q = quaternion.exp(np.outer(T, [3.0, 1.0, -2.0]))
 X = np.outer(T, [1.0, 2.0, 0.5])
 
 
+@verifies("studies.identify.trajectory_error", "a constant offset and turn", "closed form")
+@verifies("studies.identify.mean_error", "a constant offset and turn", "closed form")
+@verifies("studies.identify.squared_error", r"$(d^2/s^2 + \alpha^2/r^2)/6$", "closed form")
 @settings(deadline=None, max_examples=40, derandomize=True)
 @given(st.floats(0, np.pi), st.floats(0, 2))
 def test_a_constant_offset_is_its_size(angle, distance):
@@ -20,12 +24,12 @@ def test_a_constant_offset_is_its_size(angle, distance):
     a = Recording(T, X + distance * np.array([0.6, 0, -0.8]), quaternion.multiply(turn, Q))
     b = Recording(T, X, -Q)  # q and -q are one rotation
     error = trajectory_error(a, b, length=0.5)
-    assert error.position == pytest.approx(2 * distance, abs=1e-14)
-    assert error.rotation == pytest.approx(angle, abs=2e-15)
-    assert mean_error(0.5, 0.1)(a, b) == pytest.approx(distance + 5 * angle, abs=1e-13)
+    agree(error.position, 2 * distance, atol=1e-14)
+    agree(error.rotation, angle, atol=2e-15)
+    agree(mean_error(0.5, 0.1)(a, b), distance + 5 * angle, atol=1e-13)
     # |d|^2 / s^2 has three components, so has the angle: (d^2/s^2 + a^2/r^2) / 6
     expected = (distance**2 / 0.25 + angle**2 / 0.01) / 6
-    assert squared_error(0.5, 0.1)(a, b) == pytest.approx(expected, rel=1e-12, abs=1e-13)
+    agree(squared_error(0.5, 0.1)(a, b), expected, rtol=1e-12, atol=1e-13)
 
 
 def test_angle_is_that_of_the_frobenius_distance():
@@ -43,11 +47,12 @@ def test_all_bodies_count_alike():
     assert trajectory_error(a, b).position == pytest.approx(0.2)
 
 
+@verifies("studies.identify.face_up", "quarter turns of a cube", "closed form")
 def test_face_up():
     half = np.pi / 2
     turns = [[0, 0, 0], [2 * half, 0, 0], [half, 0, 0], [-half, 0, 0], [0, half, 0], [0, -half, 0]]
     # body z up, down; turned about x by 90 degrees body y points up; about y by 90 degrees body -x
-    assert face_up(quaternion.exp(np.array(turns))).tolist() == [2, 5, 1, 4, 3, 0]
+    agree(face_up(quaternion.exp(np.array(turns))), [2, 5, 1, 4, 3, 0])
     assert face_up(quaternion.exp([0, 0, 0.3]), up=(1, 0, 0)) == 0
 
 

@@ -10,6 +10,7 @@ from hypothesis import strategies as st
 import carom
 from carom.geometry import quaternion
 from carom.studies.identify import fit_free_flight, free_samples
+from verified import agree, verifies
 
 G = np.array([0.3, -0.2, -9.7])
 X0, V0, W0 = np.array([0.1, 0.2, 1.5]), np.array([0.5, -1.0, 2.0]), np.array([3.0, -8.0, 5.0])
@@ -60,20 +61,22 @@ def test_exact_samples_give_the_state_to_round_off(w, first, n, gaps):
     assert flight.rotation_noise < 1e-13
 
 
+@verifies("studies.identify.fit_free_flight", "parabola and constant spin", "closed form")
 def test_gravity_is_fitted_where_none_is_given():
     t = np.arange(12) / 100
     flight = fit_free_flight(t, parabola(t), spinning(t), None)
-    np.testing.assert_allclose(flight.acceleration, G, rtol=0, atol=1e-11)
-    np.testing.assert_allclose(flight.velocity, V0, rtol=0, atol=1e-12)
+    agree(flight.acceleration, G, atol=1e-11)
+    agree(flight.velocity, V0, atol=1e-12)
     assert np.all(flight.acceleration_error > 0)
 
 
+@verifies("studies.identify.fit_free_flight", "precession of a symmetric top", "closed form")
 def test_torque_free_motion_of_a_symmetric_top():
     t = np.arange(20) / 50
     q = precessing(t, 0.3, 0.5)
     flight = fit_free_flight(t, parabola(t), q, G, inertia=(0.3, 0.3, 0.5))
     # Euler's equations are integrated to 1e-12
-    np.testing.assert_allclose(flight.angular_velocity, W0, rtol=0, atol=1e-9)
+    agree(flight.angular_velocity, W0, atol=1e-9)
     assert same_rotation(flight.orientation, R0) < 1e-10
     assert flight.rotation_noise < 1e-10
     # a constant w does not describe it
@@ -171,6 +174,11 @@ def test_too_few_samples(gravity, least):
         fit_free_flight(**few, gravity=gravity)
 
 
+@verifies(
+    "studies.identify.free_samples",
+    r"gap of a box that turns: $z - a (\cos\alpha + \sin\alpha)$",
+    "closed form",
+)
 def test_samples_before_a_body_comes_near():
     # a box of half edge .1 that turns about y by 45 degrees while it sinks: gap z - .1 (cos + sin)
     angle, z = np.linspace(0, np.pi / 4, 11), np.linspace(0.3, 0.1, 11)
@@ -181,7 +189,7 @@ def test_samples_before_a_body_comes_near():
     for clearance in (0.0, 0.02, 0.05):
         expected = int(np.argmax(gap < clearance))
         assert 0 < expected < 11
-        assert free_samples(x, q, box, clearance=clearance) == expected
+        agree(free_samples(x, q, box, clearance=clearance), expected)
     assert free_samples(x, q, carom.Sphere(0.01)) == 11
     moved = free_samples(x - [1, 0, 0], q, box, point=(-1, 0, -0.5), normal=(0, 0, 2))
     assert moved == 11

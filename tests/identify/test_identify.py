@@ -6,6 +6,7 @@ import pytest
 import carom
 from carom.studies.identify import Parameter, Recording, identify, mean_error, squared_error
 from identify.tossed import POSITION_NOISE, ROTATION_NOISE, box, tosses
+from verified import agree, verifies
 
 TRUE = {"restitution": 0.35, "friction": 0.22}
 LEAST_SQUARES = squared_error(POSITION_NOISE, ROTATION_NOISE)
@@ -56,6 +57,7 @@ def sliding(parameters, recording):
     return scene
 
 
+@verifies("identify", r"$\mu$ of a recording $x = 2t - \mu g t^2/2$", "closed form")
 @pytest.mark.parametrize("method", ["Nelder-Mead", "Powell", "COBYQA", "L-BFGS-B"])
 def test_a_function_that_makes_the_scene(method):
     # decelerates with mu g: x = 2 t - mu g t^2/2, until it stops at t = 2/(mu g) = 0.82 s
@@ -67,7 +69,7 @@ def test_a_function_that_makes_the_scene(method):
         sliding, [recording], start, squared_error(1e-3, 1e-3), method=method, resamples=0,
         tolerance=1e-6,
     )  # fmt: skip
-    assert fit.parameters["mu"] == pytest.approx(mu, abs=1e-4)
+    agree(fit.parameters["mu"], mu, atol=1e-4)
     assert np.isnan(fit.error["mu"])
 
 

@@ -10,6 +10,7 @@ from carom.studies.identify.parameters import Space
 from carom.studies.identify.search import search, simplex
 from carom.studies.identify.uncertainty import bootstrap, design, minimum, quadratic_terms
 from identify.tossed import HALF, G, box
+from verified import agree, verifies
 
 
 class Known(Evaluator):
@@ -100,6 +101,7 @@ def test_simplex_turns_at_a_bound():
     np.testing.assert_array_equal(corners, [[0, 0], [-1, 0], [0, 1]])
 
 
+@verifies("studies.identify.varied", "what is named has its new value", "closed form")
 def test_varied_changes_what_it_is_told_and_nothing_else():
     scene = box()
     same, cube = varied(scene), scene.bodies[0]
@@ -115,7 +117,7 @@ def test_varied_changes_what_it_is_told_and_nothing_else():
     body, contact = other.bodies[0], other.contacts[0]
     assert (contact.restitution, contact.friction, contact.friction_held) == (0.1, 0.7, 0.7)
     assert body.shape == carom.Box(2 * HALF, 2 * HALF, 2 * HALF, radius=0.01)
-    np.testing.assert_array_equal(body.inertia, 2 * cube.inertia)
+    agree(body.inertia, 2 * cube.inertia)
     np.testing.assert_array_equal(body.angular_velocity, (4, 5, 6))
     assert body.mass == cube.mass
     assert varied(scene, friction_held=0.9).contacts[0].friction == 0.3
@@ -162,15 +164,16 @@ def falling(t, name=""):
     return Recording(t, np.zeros((n, 3)), [[1, 0, 0, 0]] * n, name=name)
 
 
+@verifies("studies.identify.roll_out", "$z = 1 - g t^2/2$", "closed form")
 @pytest.mark.parametrize("t", [np.arange(9) / 30, np.array([2.0, 2.05, 2.1, 2.2, 2.23])])
 def test_roll_out_at_the_times_of_the_recording(t):
     run = roll_out(box(), falling(t))
     since = t - t[0]
-    np.testing.assert_allclose(run.position[:, 0, 2], 1 - 0.5 * G * since**2, rtol=0, atol=1e-12)
+    agree(run.position[:, 0, 2], 1 - 0.5 * G * since**2, atol=1e-12)
     assert run.position.shape == (t.size, 1, 3)
     assert run.orientation.shape == (t.size, 1, 4)
     assert run.message == ""
-    assert run.speed == pytest.approx(G * since[-1], rel=1e-12)
+    agree(run.speed, G * since[-1], rtol=1e-12)
     assert run.residual < 1e-12
 
 
@@ -183,10 +186,13 @@ def test_a_run_that_fails_stays_where_it_stopped(t):
     np.testing.assert_allclose(run.position[-1, 0, 2], HALF, atol=1e-6)
 
 
+@verifies(
+    "studies.identify.roll_outs", "$z = 1 - g t^2/2$, in any order of the workers", "closed form"
+)
 def test_roll_outs_keep_their_order():
     found = [falling(np.arange(4) / 30 / (k + 1), str(k)) for k in range(5)]
     for workers in (1, 3):
         runs = roll_outs(lambda r: box(), found, workers=workers)
         drops = [1 - run.position[-1, 0, 2] for run in runs]
         expected = [0.5 * G * (0.1 / (k + 1)) ** 2 for k in range(5)]
-        np.testing.assert_allclose(drops, expected, rtol=0, atol=1e-12)
+        agree(drops, expected, atol=1e-12)

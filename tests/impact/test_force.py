@@ -7,10 +7,15 @@ from scipy.special import beta
 
 import carom
 from carom import Hertz, Stiffness
+from verified import agree, verifies
 
 FRICTION = np.array([[2.5, -1.5, 0], [-1.5, 2.5, 0], [0, 0, 1.0]]), (-1.0, 2.0, 0.0), 0.2
 
 
+@verifies(
+    "Stiffness", "$m v^2/2 = k d^{n+1}/(n+1)$, duration by Euler's beta function", "closed form"
+)
+@verifies("add_contact(stiffness=)", "peak force $k d^n$", "closed form")
 @pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize("n", [1.0, 1.5, 3.0])
 def test_central_impact(n, e):
@@ -22,11 +27,11 @@ def test_central_impact(n, e):
     d = ((n + 1) * m * v**2 / (2 * k)) ** (1 / (n + 1))
     time = d / v * beta(1 / (n + 1), 0.5) / (n + 1)
     force = impact.force()
-    assert impact.peak_force == pytest.approx(k * d**n, rel=1e-13)
-    assert impact.duration == pytest.approx(time * (1 + e), rel=1e-11)
-    assert force.compression_time == pytest.approx(time, rel=1e-11)
-    assert force.depth.max() == pytest.approx(d, rel=1e-12)
-    assert force.velocity[-1, 0] == pytest.approx(e * v, abs=1e-14)
+    agree(impact.peak_force, k * d**n, rtol=1e-13)
+    agree(impact.duration, time * (1 + e), rtol=1e-11)
+    agree(force.compression_time, time, rtol=1e-11)
+    agree(force.depth.max(), d, rtol=1e-12)
+    agree(force.velocity[-1, 0], e * v, atol=1e-14)
 
 
 @pytest.mark.parametrize(
@@ -58,6 +63,7 @@ def random_impact(rng):
     return (W, u, mu, e, law), Stiffness(k, n)
 
 
+@verifies("Stiffness", "a spring with friction in three dimensions", "own integration: SciPy")
 def test_random_impacts_that_slip_are_those_of_a_spring():
     rng, tried = np.random.default_rng(7), 0
     while tried < 30:
@@ -84,8 +90,8 @@ def test_random_impacts_that_slip_are_those_of_a_spring():
         spring = solve_ivp(
             rates, (0, 1e4), start, events=turns, rtol=1e-12, atol=1e-16, method="DOP853"
         )
-        assert force.compression_time == pytest.approx(spring.t[-1], rel=1e-8)
-        assert force.depth.max() == pytest.approx(spring.y[0, -1], rel=1e-8)
+        agree(force.compression_time, spring.t[-1], rtol=1e-8)
+        agree(force.depth.max(), spring.y[0, -1], rtol=1e-8)
 
 
 def test_random_impacts_keep_the_cone_and_end_as_they_do():
@@ -123,6 +129,7 @@ def ball(**stiffness):
     return scene
 
 
+@verifies("Hertz", r"$k = \tfrac43 E^* \sqrt R$, $F = k d^{3/2}$", "closed form")
 def test_a_run_reports_what_it_was_told(tmp_path):
     hertz = Hertz(2e9, 0.3)
     solution, plain = carom.simulate(ball(stiffness=hertz), 1.0), carom.simulate(ball(), 1.0)
@@ -130,14 +137,14 @@ def test_a_run_reports_what_it_was_told(tmp_path):
     assert np.all(np.isnan(plain.impacts.peak_force))
     assert np.all(np.isnan(plain.impacts.duration))
     v, (k, n) = -solution.impacts.relative_velocity_before[:, 0], hertz._of(1 / 0.02)
-    assert k == pytest.approx(4 / 3 * 2e9 / (2 * 0.91) * np.sqrt(0.02))
+    agree(k, 4 / 3 * 2e9 / (2 * 0.91) * np.sqrt(0.02), rtol=1e-6)
     assert n == 1.5
     d = (1.25 * 0.03 * v**2 / k) ** 0.4
-    np.testing.assert_allclose(solution.impacts.peak_force, k * d**1.5, rtol=1e-12)
+    agree(solution.impacts.peak_force, k * d**1.5, rtol=1e-12)
     time = 0.4 * beta(0.4, 0.5) * d / v * 1.7
-    np.testing.assert_allclose(solution.impacts.duration, time, rtol=1e-9)
+    agree(solution.impacts.duration, time, rtol=1e-9)
     alone = plain.impacts[0].force(Hertz(2e9, 0.3, radius=0.02))
-    assert alone.duration == pytest.approx(time[0], rel=1e-9)
+    agree(alone.duration, time[0], rtol=1e-9)
     solution.save(tmp_path / "drop.nc")
     loaded = carom.Solution.load(tmp_path / "drop.nc")
     assert np.array_equal(loaded.impacts.peak_force, solution.impacts.peak_force)
@@ -145,6 +152,7 @@ def test_a_run_reports_what_it_was_told(tmp_path):
     assert loaded.scene["ball-floor"].stiffness == hertz
 
 
+@verifies("Material", r"peak force $k^{2/5} (\tfrac54 m v^2)^{3/5}$", "closed form")
 def test_materials_with_a_modulus_have_hertz_s_law():
     scene = carom.Scene()
     steel = carom.Material(0.6, 0.1, young=210e9)
@@ -164,7 +172,7 @@ def test_materials_with_a_modulus_have_hertz_s_law():
     impacts = carom.simulate(scene, 0.25).impacts
     (ball0,) = impacts[impacts.body == "ball0"].peak_force[:1]
     v, (k, _) = np.sqrt(2 * 9.81 * 0.08), Hertz(210e9, 0.3, radius=0.02)._of(None)
-    assert ball0 == pytest.approx(k**0.4 * (1.25 * 0.26 * v * v) ** 0.6, rel=1e-9)
+    agree(ball0, k**0.4 * (1.25 * 0.26 * v * v) ** 0.6, rtol=1e-9)
     assert np.all(np.isnan(impacts[impacts.body == "box"].peak_force))
 
 

@@ -5,6 +5,7 @@ import pytest
 from cases import U_SPACE, W_SPACE
 
 from carom.impact import geometry as g
+from verified import agree, verifies
 
 
 def affinity(x):
@@ -63,13 +64,14 @@ def test_affinity_is_that_of_the_metric():
     assert g.normal_coordinate(b * np.log(x / b), b) == pytest.approx(x, rel=1e-14)
 
 
+@verifies("impact.diagonal_form", r"the same energy and power as $\dot u = W (N, T)$", "invariant")
 def test_diagonal_form_is_the_coupled_one():
     # g_ii d(vtil)/dt = f_i against du/dt = W (N, T), and the same kinetic energy.
     force = np.array([3.0, -0.4, 0.7])
     masses, vtil, f = g.diagonal_form(W_SPACE, U_SPACE, force)
     energy = U_SPACE @ np.linalg.solve(W_SPACE, U_SPACE)
-    assert np.sum(masses * vtil**2) == pytest.approx(energy, rel=1e-13)
+    agree(np.sum(masses * vtil**2), energy, rtol=1e-13)
     _, rate, _ = g.diagonal_form(W_SPACE, W_SPACE @ force, force)  # vtil is linear in u
-    np.testing.assert_allclose(masses * rate, f, rtol=1e-12)
+    agree(masses * rate, f, rtol=1e-12)
     # Power: f.vtil = force.u
-    assert f @ vtil == pytest.approx(force @ U_SPACE, rel=1e-13)
+    agree(f @ vtil, force @ U_SPACE, rtol=1e-13)

@@ -12,6 +12,7 @@ from hypothesis import strategies as st
 from carom.impact.api import resolve_impact
 from carom.impact.slip_directions import critical_friction, invariant_directions
 from carom.law.impact_laws import GAINING, NUMBERS
+from verified import agree, verifies
 
 laws = st.sampled_from(LAWS)
 few = settings(max_examples=40, deadline=None)
@@ -21,6 +22,7 @@ def kinetic(W, u):
     return 0.5 * u @ np.linalg.solve(W, u)
 
 
+@verifies("resolve_impact", "$u^+ = u^- + W P$, energy by works of the force", "invariant")
 @pytest.mark.plain
 @few
 @given(problem=problems(), law=laws)
@@ -29,14 +31,14 @@ def test_momentum_work_energy_and_cone(problem, law):
     a = resolve_impact(W, u, mu, e, law)
     # u+ = u- + W P;  |P_t| <= mu P_n;  dE = A_c + A_r - friction loss = E(u+) - E(u-).
     size = np.linalg.norm(u) + np.linalg.norm(a.velocity_after)
-    np.testing.assert_allclose(a.velocity_after, u + W @ a.impulse, rtol=0, atol=1e-10 * size)
+    agree(a.velocity_after, u + W @ a.impulse, atol=1e-10 * size)
     # Slip below 1e-12 of the speed counts as rest: that much goes into the impulse.
     assert np.hypot(*a.impulse[1:]) <= (mu + 1e-9) * a.impulse[0]
     scale = abs(a.compression_work) + a.restitution_work + a.friction_loss
     ledger = a.compression_work + a.restitution_work - a.friction_loss
-    assert a.energy_change == pytest.approx(ledger, abs=1e-10 * scale)
+    agree(a.energy_change, ledger, atol=1e-10 * scale)
     change = kinetic(W, a.velocity_after) - kinetic(W, u)
-    assert a.energy_change == pytest.approx(change, abs=1e-8 * kinetic(W, u))
+    agree(a.energy_change, change, atol=1e-8 * kinetic(W, u))
     # Where strong coupling compresses again, compression ends with the last zero of u_n; only
     # Stronge's law then keeps the work before it negative.
     if law == "stronge" or "jam" not in a.phases:
@@ -99,13 +101,14 @@ def test_units_do_not_matter(problem, law, mass, speed):
     assert loss == pytest.approx(a.friction_loss, rel=1e-6, abs=1e-9 * kinetic(W, u))
 
 
+@verifies("resolve_impact", r"$P = (1 + e)\,\lvert u_n\rvert/W_{nn}$", "closed form")
 @few
 @given(problem=problems(), law=st.sampled_from(KNOWN))
 def test_without_friction(problem, law):
     # mu = 0: P = (1+e) |u_n|/W_nn along the normal, each law.
     W, u, _, e = problem
     impact = resolve_impact(W, u, 0.0, e, law)
-    np.testing.assert_allclose(impact.impulse, [-(1 + e) * u[0] / W[0, 0], 0, 0], rtol=1e-12)
+    agree(impact.impulse, [-(1 + e) * u[0] / W[0, 0], 0, 0], rtol=1e-12)
     assert impact.friction_loss == 0.0
 
 

@@ -9,6 +9,7 @@ from hypothesis import strategies as st
 from carom.impact.api import resolve_impact
 from carom.impact.geometry import NormalMotion
 from carom.impact.history import impact_layer
+from verified import agree, verifies
 
 B = 1e-3
 ROUND_OFF = 1e-13
@@ -18,6 +19,7 @@ def pass_layer(W, u, mu, e, law="newton", steps=2, delta=0.8, width=B):
     return impact_layer(W, u, mu, e, penetration=delta, width=width, law=law, steps=steps)
 
 
+@verifies("impact_layer", "law A: the depth is a parabola in each phase", "closed form")
 @pytest.mark.plain
 @pytest.mark.parametrize("law", LAWS)
 def test_two_steps_are_exact_for_e_1(law):
@@ -27,35 +29,37 @@ def test_two_steps_are_exact_for_e_1(law):
     assert len(layer.t) == 3
     t = np.linspace(0, layer.duration, 101)
     x, u = layer.evaluate(t)
-    np.testing.assert_allclose(x / B, exact.x(t) / B, rtol=0, atol=ROUND_OFF)
-    np.testing.assert_allclose(u[:, 0] / 3, exact.normal_velocity(t) / 3, rtol=0, atol=ROUND_OFF)
+    agree(x / B, exact.x(t) / B, atol=ROUND_OFF)
+    agree(u[:, 0] / 3, exact.normal_velocity(t) / 3, atol=ROUND_OFF)
     assert np.all(u[:, 1:] == 0)
 
 
+@verifies("impact_layer", r"$x_{\min} = (1 - \delta)\,b$, duration $T_c (1 + 1/e)$", "closed form")
 @settings(max_examples=40, deadline=None)
 @given(e=st.floats(1e-3, 1.0), delta=st.floats(0.01, 0.99), law=st.sampled_from(KNOWN))
 def test_exit_speed_depth_and_duration(e, delta, law):
     # Without coupling all laws part with e v0; x_min = (1-delta) b; duration T_c (1 + 1/e).
     v0, W = 1.7, np.diag([0.5, 2.0, 3.0])
     layer = pass_layer(W, (-v0, 0.3, 0.1), 0.1, e, law, delta=delta)
-    assert layer.velocity_after[0] == pytest.approx(e * v0, rel=1e-12)
-    assert np.min(layer.x) == pytest.approx((1 - delta) * B, rel=1e-12)
-    assert layer.x[[0, -1]] == pytest.approx(B, rel=1e-12)
+    agree(layer.velocity_after[0], e * v0, rtol=1e-12)
+    agree(np.min(layer.x), (1 - delta) * B, rtol=1e-12)
+    agree(layer.x[[0, -1]], B, rtol=1e-12)
     t_c = -2 * B * np.log1p(-delta) / v0
-    assert layer.duration == pytest.approx(t_c * (1 + 1 / e), rel=1e-12)
+    agree(layer.duration, t_c * (1 + 1 / e), rtol=1e-12)
     # N = m_n a (b/x) is constant in s: m_n a_c in compression, e^2 of it in restitution.
-    assert layer.normal_force[0] == pytest.approx(v0 / t_c / W[0, 0], rel=1e-12)
-    assert layer.normal_force[-1] == pytest.approx(e**2 * v0 / t_c / W[0, 0], rel=1e-11)
+    agree(layer.normal_force[0], v0 / t_c / W[0, 0], rtol=1e-12)
+    agree(layer.normal_force[-1], e**2 * v0 / t_c / W[0, 0], rtol=1e-11)
 
 
 # Orders 4 (§1.11): errors of u+ at 1, 2, 4, 8 steps a phase as the mathematics page prints them.
+@verifies("impact_layer", "errors of order 4 in the number of steps", "closed form")
 def test_order_in_space():
     exact = resolve_impact(W_SPACE, U_SPACE, 0.2, 0.5).velocity_after
     errors = np.array([
         np.max(np.abs(pass_layer(W_SPACE, U_SPACE, 0.2, 0.5, steps=2 * n).velocity_after - exact))
         for n in (1, 2, 4, 8)
     ])  # fmt: skip
-    np.testing.assert_allclose(errors, (5.4e-6, 3.2e-7, 2.0e-8, 1.25e-9), rtol=0.02)
+    agree(errors, (5.4e-6, 3.2e-7, 2.0e-8, 1.25e-9), rtol=0.02)
 
 
 @pytest.mark.parametrize("law", LAWS)

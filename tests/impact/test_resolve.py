@@ -6,6 +6,7 @@ from cases import LAWS, U_SPACE, W_SPACE, planar
 
 from carom.impact.api import resolve_impact
 from carom.impact.slip_directions import critical_friction, invariant_directions
+from verified import agree, verifies
 
 DIGITS = 1e-11  # twelve decimals are printed; the last ones are off by up to five units
 
@@ -54,14 +55,20 @@ def test_slip_bends_past_rest():
     assert newton.phases == ("slip",)
 
 
+@verifies("impact.critical_friction", r"$\mu_c = \lvert W_{tt}^{-1} W_{tn}\rvert$", "closed form")
+@verifies(
+    "impact.invariant_directions",
+    "directions in which slip keeps its direction",
+    "own integration: roots of the hodograph",
+)
 def test_directions_and_critical_friction():
-    assert critical_friction(W_SPACE) == pytest.approx(0.3207123399, abs=1e-10)
+    agree(critical_friction(W_SPACE), 0.3207123399, atol=1e-10)
     rays = invariant_directions(W_SPACE, 0.2)
-    np.testing.assert_allclose(rays.angle, (2.760279, 5.624978), rtol=0, atol=1e-6)
+    agree(rays.angle, (2.760279, 5.624978), atol=1e-6)
     assert rays.outgoing.tolist() == [False, True]
     # The stick ratio of V4, for which |tau| is the critical friction.
     tau = -np.linalg.solve(W_SPACE[1:, 1:], W_SPACE[1:, 0])
-    np.testing.assert_allclose(tau, (-0.243181818182, 0.209090909091), rtol=0, atol=DIGITS)
+    agree(tau, (-0.243181818182, 0.209090909091), atol=DIGITS)
 
 
 def test_slip_from_rest_takes_the_outgoing_direction():
@@ -72,15 +79,20 @@ def test_slip_from_rest_takes_the_outgoing_direction():
     np.testing.assert_allclose(u[1:] / np.hypot(*u[1:]), (np.cos(angle), np.sin(angle)), atol=1e-13)
 
 
+@verifies(
+    'impact_law="{law}"',
+    r"ball: $u_t^+ = u_t (1 - \tfrac72 \mu (1 + e) \lvert u_n\rvert/\lvert u_t\rvert)$, or 0",
+    "closed form",
+)
 @pytest.mark.parametrize("law", LAWS)
 def test_sphere(law):
     # V5, W = diag(1, 3.5, 3.5)/m: slip u_t (1 - 3.5 mu (1+e) |u_n|/|u_t|), or stick at u_t = 0.
     slip = resolve_impact(np.diag([1, 3.5, 3.5]), (-2, 1, 0.5), 0.05, 0.8, law)
     kept = 1 - 3.5 * 0.05 * 1.8 * 2 / np.hypot(1, 0.5)
-    np.testing.assert_allclose(slip.velocity_after, (1.6, kept, 0.5 * kept), rtol=1e-14)
+    agree(slip.velocity_after, (1.6, kept, 0.5 * kept), rtol=1e-14)
     assert slip.velocity_after[1] == pytest.approx(0.436510869, abs=1e-9)
     stick = resolve_impact(np.diag([1, 3.5, 3.5]), (-2, 1, 0.5), 0.5, 0.8, law)
-    np.testing.assert_allclose(stick.velocity_after, (1.6, 0, 0), atol=1e-15)
+    agree(stick.velocity_after, (1.6, 0, 0), atol=1e-15)
 
 
 V6 = {
@@ -90,11 +102,12 @@ V6 = {
 }
 
 
+@verifies('impact_law="{law}"', "rod whose slip reverses: Routh's method, by pieces", "closed form")
 @pytest.mark.plain
 @pytest.mark.parametrize("law", LAWS)
 def test_rod_whose_slip_reverses(law):
     impact = resolve_impact(planar(2.5, -1.5, 2.5), (-1, 0.2, 0), 0.3, 0.5, law)
-    np.testing.assert_allclose(impact.velocity_after[:2], V6[law], rtol=0, atol=DIGITS)
+    agree(impact.velocity_after[:2], V6[law], atol=DIGITS)
     assert impact.phases == ("slip", "reversal")
 
 
@@ -106,13 +119,14 @@ def test_rod_that_leaves_faster_than_it_came():
         assert impact.velocity_after[0] == pytest.approx(ratio, abs=DIGITS)
 
 
+@verifies("resolve_impact", "rod at 45°: $E^+/E^- = 81/64$ by Newton's law", "closed form")
 def test_newton_gains_energy_and_the_others_do_not():
     # V8: E+/E- = 81/64 for Newton; that is the law with friction, not an error.
     W, u = planar(2.5, -1.5, 2.5), np.array([-1, 0.6, 0])
     before = 0.5 * u[:2] @ np.linalg.solve(W[:2, :2], u[:2])
     ratio = {law: 1 + resolve_impact(W, u, 0.8, 0.9, law).energy_change / before for law in LAWS}
-    assert ratio["newton"] == pytest.approx(81 / 64, rel=1e-14)
-    assert ratio["poisson"] == pytest.approx(0.5184, rel=1e-13)
+    agree(ratio["newton"], 81 / 64, rtol=1e-14)
+    agree(ratio["poisson"], 0.5184, rtol=1e-13)
     assert ratio["stronge"] == pytest.approx(0.643371429, abs=1e-9)
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import carom
+from verified import agree, verifies
 
 W = np.array([[1.0, 0.3, 0.1], [0.3, 3.5, 0.2], [0.1, 0.2, 3.0]])
 LAWS = ["newton", "poisson", "stronge"]
@@ -113,13 +114,18 @@ def test_inverse_mass_of_a_mechanism_is_that_of_the_run():
     assert np.all(found[2] == 0.0)  # the hinges let nothing move across their plane
 
 
+@verifies(
+    "contact_inverse_mass",
+    r"two balls: $(1/m_1 + 1/m_2)\,\mathrm{diag}(1, \tfrac72, \tfrac72)$",
+    "closed form",
+)
 def test_inverse_mass_of_two_bodies():
     """Of two balls the reduced mass: 1/m1 + 1/m2 along the normal, 7/2 times as much across it."""
     scene = carom.Scene()
     one = scene.add_body(carom.Sphere(0.1), mass=1.0, name="one")
     two = scene.add_body(carom.Sphere(0.2), mass=3.0, position=(0, 0, 0.3), name="two")
     W = carom.contact_inverse_mass(scene, two, point=(0, 0, 0.1), normal=(0, 0, 1), other="one")
-    np.testing.assert_allclose(W, np.diag([1, 3.5, 3.5]) * (1 + 1 / 3), rtol=1e-14, atol=1e-15)
+    agree(W, np.diag([1, 3.5, 3.5]) * (1 + 1 / 3), rtol=1e-14, atol=1e-15)
     with pytest.raises(ValueError, match="another part than body"):
         carom.contact_inverse_mass(scene, one, (0, 0, 0), (0, 0, 1), other=one)
     with pytest.raises(ValueError, match="did you mean 'two'"):

@@ -5,6 +5,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import carom
+from verified import agree, verifies
 
 SLIP = carom.Friction(static=0.4, kinetic=0.1, speed=0.5)
 W = np.array([[2.5, -1.5, 0.2], [-1.5, 2.6, 0.1], [0.2, 0.1, 2.2]])
@@ -25,13 +26,18 @@ def integrated(W, u, e, law=SLIP):
     return solve_ivp(rate, (0, 10), u, rtol=1e-12, atol=1e-13, events=arrives).y_events[0][0]
 
 
+@verifies(
+    "Friction",
+    r"impact: $\mathrm du/\mathrm dp = W (1, -\mu(\lvert u_t\rvert)\,u_t/\lvert u_t\rvert)$",
+    "own integration: SciPy",
+)
 def test_against_an_integration():
     # The pair of order 5 has 1e-12 of the velocity a step, and the reference the same.
     found = carom.resolve_impact(W, U, SLIP, 0.5)
-    np.testing.assert_allclose(found.velocity_after, integrated(W, U, 0.5), rtol=0, atol=1e-10)
-    np.testing.assert_allclose(found.velocity_after, U + W @ found.impulse, rtol=0, atol=1e-14)
+    agree(found.velocity_after, integrated(W, U, 0.5), atol=1e-10)
+    agree(found.velocity_after, U + W @ found.impulse, atol=1e-14)
     many = carom.resolve_impacts(W, [U], SLIP, 0.5)
-    np.testing.assert_allclose(found.velocity_after, many.velocity_after[0], rtol=0, atol=1e-10)
+    agree(found.velocity_after, many.velocity_after[0], atol=1e-10)
 
 
 def test_restitution_by_the_approach():

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import carom
+from verified import agree, verifies
 
 R = 0.05
 
@@ -22,15 +23,18 @@ def bounce(e_t, *, velocity, spin, mu=10.0, e=1.0, impact_law="newton"):
     return carom.simulate(scene, 0.02)
 
 
+@verifies(
+    "add_contact(tangential_restitution=)", r"$v^+ = \tfrac37 v + \tfrac47 r\omega$", "closed form"
+)
 @pytest.mark.parametrize("impact_law", ["newton", "poisson", "stronge"])
 @pytest.mark.parametrize(("v", "rw"), [(1.0, 0.0), (0.0, 1.0), (1.0, -1.0), (0.7, 2.0)])
 def test_super_ball(v, rw, impact_law):
     # e = e_t = 1: the slip v - r w is reversed, and the angular momentum about the point of contact is kept
     solution = bounce(1.0, velocity=(v, 0, -1.0), spin=rw / R, impact_law=impact_law)
     after = solution.velocity[-1, 0, 0], R * solution.angular_velocity[-1, 0, 1]
-    assert after[0] == pytest.approx(3 / 7 * v + 4 / 7 * rw, abs=1e-12)
-    assert after[1] == pytest.approx(10 / 7 * v - 3 / 7 * rw, abs=1e-12)
-    assert solution.kinetic_energy[-1] == pytest.approx(solution.kinetic_energy[0], rel=1e-12)
+    agree(after[0], 3 / 7 * v + 4 / 7 * rw, atol=1e-12)
+    agree(after[1], 10 / 7 * v - 3 / 7 * rw, atol=1e-12)
+    agree(solution.kinetic_energy[-1], solution.kinetic_energy[0], rtol=1e-12)
 
 
 def test_zero_ends_without_slip_and_minus_one_as_without_friction():

@@ -11,6 +11,7 @@ import pytest
 import carom
 from carom import GROUND, joints
 from carom.geometry import quaternion
+from verified import agree, verifies
 
 FILE = Path(__file__).parents[1] / "data" / "adams" / "adams_joints.npz"
 OURS = 2e-4
@@ -51,28 +52,27 @@ def simulate(case):
     return carom.simulate(scene, 5.0, step=1e-3, save_every=50)
 
 
-@pytest.mark.parametrize("case", CASES)
-def test_motion_and_reactions(case):
+@verifies("joints.{kind}", "motion and reactions of a body on one joint", "other program: Adams")
+@pytest.mark.parametrize(("kind", "case"), [(case.partition("_")[0], case) for case in CASES])
+def test_motion_and_reactions(kind, case):
     s = simulate(case)
     with np.load(FILE) as data:
         names = ("t", "Pos", "Vel", "Quat", "Avel", "Rforce", "Rtorque")
         known = {name: data[f"{case}/{name}"] for name in names}
     position, velocity, attitude = CASES[case][3:]
-    np.testing.assert_allclose(s.t, known["t"], atol=1e-9)
+    agree(s.t, known["t"], atol=1e-9)
     far = 1.0 + np.abs(known["Pos"]).max()
-    np.testing.assert_allclose(s.position[:, 0], known["Pos"], rtol=0, atol=position * far + OURS)
-    np.testing.assert_allclose(s.velocity[:, 0], known["Vel"], rtol=0, atol=velocity + OURS)
-    np.testing.assert_allclose(
-        s.angular_velocity[:, 0], known["Avel"], rtol=0, atol=velocity + OURS
-    )
+    agree(s.position[:, 0], known["Pos"], atol=position * far + OURS)
+    agree(s.velocity[:, 0], known["Vel"], atol=velocity + OURS)
+    agree(s.angular_velocity[:, 0], known["Avel"], atol=velocity + OURS)
     Q = s.orientation[:, 0]
     Q = Q * np.sign(np.sum(Q * known["Quat"], axis=1, keepdims=True))
-    np.testing.assert_allclose(Q, known["Quat"], rtol=0, atol=attitude + OURS)
+    agree(Q, known["Quat"], atol=attitude + OURS)
     # on the ground, about the joint's point: ours are on the body at its anchor
     force = -s.joint_reactions[:, 0, :3]
     torque = -s.joint_reactions[:, 0, 3:]
     if case == "Prismatic_Case02":  # the anchor slides away from the point
         torque = torque + np.cross(s.position[:, 0] - s.position[0, 0], force)
-    np.testing.assert_allclose(force, known["Rforce"], rtol=0, atol=2e-2)
+    agree(force, known["Rforce"], atol=2e-2)
     # of the sliding body up to 600 N m, over 60 m: its digits there are good to 1e-4
-    np.testing.assert_allclose(torque, known["Rtorque"], rtol=2e-4, atol=2e-2)
+    agree(torque, known["Rtorque"], rtol=2e-4, atol=2e-2)

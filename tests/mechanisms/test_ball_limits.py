@@ -12,6 +12,7 @@ import carom
 from carom import GROUND, joints
 from carom.geometry import quaternion
 from carom.geometry.frames import triad
+from verified import agree, verifies
 
 M, L, I, AXIAL, G = 2.0, 0.5, 0.53, 0.01, 9.81  # about the pivot; I = .03 + M L^2
 LIMIT = 0.4
@@ -44,24 +45,29 @@ def swing_of(solution):
     return np.arctan2(np.hypot(along[:, 0], along[:, 1]), along[:, 2])
 
 
+@verifies(
+    "add_stop(coordinate=)",
+    r"swing: $I\dot\theta^2/2 = I\omega^2/2 - M g L (1 - \cos\theta)$",
+    "closed form",
+)
 @pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
 def test_a_pendulum_strikes_its_cone(e):
     """I theta'^2 / 2 = I w^2 / 2 - M g L (1 - cos(limit)) before, e theta' after."""
     solution = carom.simulate(pendulum(e, (0.0, 2.4, 0.0)), 0.6, rtol=1e-10)
     speed = np.sqrt(2.4**2 - 2 * M * G * L / I * (1 - np.cos(LIMIT)))
     first = solution.impacts[0]
-    assert first.relative_velocity_before[0] == pytest.approx(-speed, rel=1e-8)
-    assert first.relative_velocity_after[0] == pytest.approx(e * speed, rel=1e-8, abs=1e-10)
-    assert first.impulse[0] == pytest.approx((1 + e) * I * speed, rel=1e-8)
+    agree(first.relative_velocity_before[0], -speed, rtol=1e-8)
+    agree(first.relative_velocity_after[0], e * speed, rtol=1e-8, atol=1e-10)
+    agree(first.impulse[0], (1 + e) * I * speed, rtol=1e-8)
     assert first.unit == "rad/s"
     assert np.max(swing_of(solution)) < LIMIT + 1e-10
     gap = solution.contact("limit").gap
-    np.testing.assert_allclose(gap, LIMIT - swing_of(solution), atol=1e-12)
-    assert np.abs(solution.ledger.residual).max() < 1e-9
+    agree(gap, LIMIT - swing_of(solution), atol=1e-12)
+    agree(solution.ledger.residual, 0.0, atol=1e-9)
     # it swings through the place where the swing has no direction, and strikes the other side
     if e == 1.0:
         assert len(solution.impacts) == 2
-        assert solution.impacts[1].relative_velocity_before[0] == pytest.approx(-speed, rel=1e-8)
+        agree(solution.impacts[1].relative_velocity_before[0], -speed, rtol=1e-8)
 
 
 def test_a_strike_at_the_cone_keeps_the_momentum_about_its_axis():

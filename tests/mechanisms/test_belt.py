@@ -9,6 +9,7 @@ import carom
 from carom import GROUND, constraints, forces, joints
 from carom.geometry import quaternion
 from files.compare import goes_on
+from verified import agree, verifies
 
 RA, RB = 0.1, 0.04
 CENTER = np.array([0.3, 0.1, 0.0])
@@ -67,24 +68,29 @@ def lines(crossed):
     return [(l * d + side * rho * np.cross(n, d)) / (d @ d) for side in (-1, 1)]
 
 
+@verifies(
+    "joints.Belt",
+    r"$I_b \dot\omega_b = r_b (T_1 - T_2) - c\,\omega_b$, $T_1 + T_2 = 2 T_0$",
+    "closed form",
+)
 @pytest.mark.parametrize("crossed", [False, True])
 def test_tensions_and_bearings(crossed):
     """I_b w_b' = r_b (T_1 - T_2) - c w_b, T_1 + T_2 = 2 T_0; the hinges carry T_1 e_1 + T_2 e_2."""
     s = carom.simulate(drive({"tension": 30.0}, crossed), 0.5, rtol=1e-10)
     tight, slack = s["belt1"].tension.T
-    np.testing.assert_allclose(tight + slack, 60.0)
+    agree(tight + slack, 60.0, rtol=1e-7)
     inertia = 0.5 * 0.5 * RB**2, 0.5 * 1.0 * RA**2
     ratio = RA / RB
     whole = inertia[1] + ratio**2 * inertia[0]
     wa = s["hinge a"].rate
     rate = (0.3 * np.cos(3 * s.t) - ratio**2 * 0.01 * wa) / whole
     pull = (inertia[0] * ratio * rate + 0.01 * ratio * wa) / RB
-    np.testing.assert_allclose(tight - slack, pull, rtol=1e-9, atol=1e-9)
+    agree(tight - slack, pull, rtol=1e-9, atol=1e-9)
     e1, e2 = lines(crossed)
     on_a = np.outer(tight, e1) + np.outer(slack, e2)
-    np.testing.assert_allclose(s["hinge a"].force, -on_a, atol=1e-8)
-    np.testing.assert_allclose(s["hinge b"].force, on_a, atol=1e-8)
-    np.testing.assert_allclose(s["hinge a"].torque[:, :2], 0.0, atol=1e-8)
+    agree(s["hinge a"].force, -on_a, atol=1e-8)
+    agree(s["hinge b"].force, on_a, atol=1e-8)
+    agree(s["hinge a"].torque[:, :2], 0.0, atol=1e-8)
 
 
 def test_bearings_rub_by_the_tension():
@@ -155,6 +161,7 @@ def test_a_reversed_hinge_and_a_framed_one():
     np.testing.assert_allclose(s["wrist"].coordinate[0], np.radians(50.0), atol=1e-12)
 
 
+@verifies("joints.Belt", r"$P = (1 + e)\,r_a\omega_a/(r_a^2/I_a + r_b^2/I_b)$", "closed form")
 @pytest.mark.parametrize("e", [0.0, 0.5])
 def test_a_slack_belt_gets_taut(e):
     """Half of the slack runs out: P = (1 + e) r_a w_a/(r_a^2/I_a + r_b^2/I_b), and the hinges take P e_1."""
@@ -162,18 +169,18 @@ def test_a_slack_belt_gets_taut(e):
     scene = drive({"one_sided": True, "slack": slack, "restitution": e}, load=0.0, torque=0.0)
     scene.replace("a", angular_velocity=(0, 0, spin))
     s = carom.simulate(scene, 0.05, rtol=1e-10)
-    np.testing.assert_allclose(s.impacts.time[0], 0.5 * slack / (RA * spin), rtol=1e-12)
+    agree(s.impacts.time[0], 0.5 * slack / (RA * spin), rtol=1e-12)
     ia, ib = 0.5 * RA**2, 0.25 * RB**2
     impulse = (1 + e) * RA * spin / (RA**2 / ia + RB**2 / ib)
-    np.testing.assert_allclose(s.impacts.impulse[0, 0], impulse, rtol=1e-10)
+    agree(s.impacts.impulse[0, 0], impulse, rtol=1e-10)
     own = s.joint_impulses
     by = {str(name): vector for name, vector in zip(own.name, own.impulse)}
     e1 = lines(False)[0]
-    np.testing.assert_allclose(by["hinge a"], -impulse * e1, atol=1e-9)
-    np.testing.assert_allclose(by["hinge b"], impulse * e1, atol=1e-9)
+    agree(by["hinge a"], -impulse * e1, atol=1e-9)
+    agree(by["hinge b"], impulse * e1, atol=1e-9)
     if e == 0.0:
         wa = spin - impulse * RA / ia
-        np.testing.assert_allclose(s["hinge b"].rate[-1], wa * RA / RB, rtol=1e-10)
+        agree(s["hinge b"].rate[-1], wa * RA / RB, rtol=1e-10)
     assert np.all(s["belt1.1"].gap > -1e-12)
     assert np.all(s["belt1.2"].gap > -1e-12)
 
@@ -194,6 +201,7 @@ def test_one_sided_strands_without_slack():
     np.testing.assert_allclose((one - two)[1:-1], pull[1:-1], atol=1e-7)
 
 
+@verifies("forces.BeltStrand", r"$\omega^2 = 2 k (r_a^2/I_a + r_b^2/I_b)$", "closed form")
 def test_elastic_strands():
     """Two springs in tension: the wheels swing against each other with w^2 = 2 k (r_a^2/I_a + r_b^2/I_b)."""
     k, spin = 2000.0, 0.5
@@ -204,12 +212,15 @@ def test_elastic_strands():
     both = RA**2 / ia + RB**2 / ib
     w = np.sqrt(2 * k * both)
     stretch = RA * spin / w * np.sin(w * s.t)
-    np.testing.assert_allclose(s["belt1.1"].tension, 20.0 + k * stretch, atol=1e-6)
-    np.testing.assert_allclose(s["belt1.2"].tension, 20.0 - k * stretch, atol=1e-6)
-    np.testing.assert_allclose(s["belt1.1"].coordinate, stretch, atol=1e-9)
-    np.testing.assert_allclose(s.total_energy, s.total_energy[0], rtol=1e-8)
+    agree(s["belt1.1"].tension, 20.0 + k * stretch, atol=1e-6)
+    agree(s["belt1.2"].tension, 20.0 - k * stretch, atol=1e-6)
+    agree(s["belt1.1"].coordinate, stretch, atol=1e-9)
+    agree(s.total_energy, s.total_energy[0], rtol=1e-8)
 
 
+@verifies(
+    "forces.BeltStrand", "the same with one strand at a time, which pulls only", "closed form"
+)
 def test_an_elastic_strand_hangs_slack():
     """Without tension one spring acts at a time: half the stiffness, the same energy; it pulls only."""
     k, spin = 2000.0, 0.5
@@ -219,9 +230,9 @@ def test_an_elastic_strand_hangs_slack():
     ia, ib = 0.5 * RA**2, 0.25 * RB**2
     w = np.sqrt(k * (RA**2 / ia + RB**2 / ib))
     stretch = RA * spin / w * np.sin(w * s.t)
-    np.testing.assert_allclose(s["belt1.1"].tension, np.maximum(0.0, k * stretch), atol=1e-6)
-    np.testing.assert_allclose(s["belt1.2"].tension, np.maximum(0.0, -k * stretch), atol=1e-6)
-    np.testing.assert_allclose(s.total_energy, s.total_energy[0], rtol=1e-8)
+    agree(s["belt1.1"].tension, np.maximum(0.0, k * stretch), atol=1e-6)
+    agree(s["belt1.2"].tension, np.maximum(0.0, -k * stretch), atol=1e-6)
+    agree(s.total_energy, s.total_energy[0], rtol=1e-8)
 
 
 @pytest.mark.parametrize(

@@ -7,6 +7,7 @@ from scipy.integrate import solve_ivp
 import carom
 from carom import GROUND, joints
 from files.compare import goes_on
+from verified import agree, verifies
 
 G, R = 9.81, 0.1
 HOW = [({}, 1e-8), ({"rtol": 1e-10}, 1e-10), ({"step": 1e-2}, 1e-10)]
@@ -27,6 +28,7 @@ def post(masses, mu, speed=0.0, on=GROUND, turns=0, height=(-1.0, -1.0), **rope)
     return scene
 
 
+@verifies("Pulley", r"$T_2 = T_1 e^{\mu\pi}$, $(m + E M)\,a = (M - E m)\,g$", "closed form")
 @pytest.mark.parametrize(("how", "error"), HOW)
 @pytest.mark.parametrize("masses", [(1.0, 2.0), (2.0, 1.0)])
 def test_slip(how, error, masses):
@@ -35,15 +37,13 @@ def test_slip(how, error, masses):
     grip, side = np.exp(0.2 * np.pi), 1 if masses[1] > masses[0] else -1
     small, large = sorted(masses)
     a = (large - grip * small) * G / (large + grip * small)
-    np.testing.assert_allclose(s["b"].position[:, 2], -1 - side * 0.5 * a * s.t**2, atol=error)
-    np.testing.assert_allclose(s["a"].position[:, 2], -1 + side * 0.5 * a * s.t**2, atol=error)
+    agree(s["b"].position[:, 2], -1 - side * 0.5 * a * s.t**2, atol=error)
+    agree(s["a"].position[:, 2], -1 + side * 0.5 * a * s.t**2, atol=error)
     tension = np.array([small * (G + a), large * (G - a)])[::side]
-    np.testing.assert_allclose(
-        s["rope"].tension[1:], np.tile(tension, (len(s.t) - 1, 1)), rtol=1e-9
-    )
+    agree(s["rope"].tension[1:], np.tile(tension, (len(s.t) - 1, 1)), rtol=1e-9)
     heat = abs(tension[0] - tension[1]) * 0.5 * a * s.t**2
-    np.testing.assert_allclose(-s.ledger.friction, heat, atol=error)
-    np.testing.assert_allclose(s.total_energy, s.total_energy[0] - heat, atol=10 * error)
+    agree(-s.ledger.friction, heat, atol=error)
+    agree(s.total_energy, s.total_energy[0] - heat, atol=10 * error)
 
 
 @pytest.mark.parametrize("turns", [0, 1, 3])
@@ -162,6 +162,9 @@ def test_a_wheel_that_spins_takes_the_rope_along():
     np.testing.assert_allclose(s["hinge"].rate[-1] * R, a * end, atol=1e-9)
 
 
+@verifies(
+    "Pulley", r"$T_2 = T_1 e^{\mu\varphi}$ with an angle that changes", "own integration: SciPy"
+)
 @pytest.mark.parametrize(("how", "error"), [({}, 1e-6), ({"rtol": 1e-10}, 1e-9)])
 def test_a_load_that_swings(how, error):
     """The angle on the post follows the strand: against an integration of its own."""
@@ -197,12 +200,10 @@ def test_a_load_that_swings(how, error):
         atol=1e-13,
         t_eval=s.t,
     )
-    np.testing.assert_allclose(s["b"].position[:, 0], known.y[0], atol=error)
-    np.testing.assert_allclose(s["b"].position[:, 2], known.y[1], atol=error)
-    np.testing.assert_allclose(s["a"].position[:, 2], known.y[4], atol=error)
-    np.testing.assert_allclose(
-        s.total_energy, s.total_energy[0] + s.ledger.friction, atol=10 * error
-    )
+    agree(s["b"].position[:, 0], known.y[0], atol=error)
+    agree(s["b"].position[:, 2], known.y[1], atol=error)
+    agree(s["a"].position[:, 2], known.y[4], atol=error)
+    agree(s.total_energy, s.total_energy[0] + s.ledger.friction, atol=10 * error)
 
 
 def test_a_guide_that_a_joint_keeps_from_turning():

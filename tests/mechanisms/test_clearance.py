@@ -8,6 +8,7 @@ from carom import GROUND, constraints, forces, joints
 from carom.geometry import quaternion
 from carom.visual.bodies import links_of
 from files.compare import differences
+from verified import agree, verifies
 
 G = 9.81
 RADIUS, BORE = 0.02, 0.1  # of a ball, and of the pipe in which it rolls
@@ -24,6 +25,7 @@ def hanging(e=0.0, radial=1e-3, **more):
     return scene
 
 
+@verifies("joints.Clearance", r"strikes at $\sqrt{2c/g}$, bounces for $2 e v/g$", "closed form")
 @pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize("axis", [(0, 1, 0), (1, 2, 0)])
 def test_a_pin_falls_through_its_play(e, axis):
@@ -37,16 +39,16 @@ def test_a_pin_falls_through_its_play(e, axis):
     run = carom.simulate(scene, 0.2)
     t, v = np.sqrt(2 * c / G), np.sqrt(2 * G * c)
     assert run.success
-    assert run.impacts.time[0] == pytest.approx(t, abs=1e-14)
-    assert run.impacts.impulse[0, 0] == pytest.approx(2.0 * (1 + e) * v, rel=1e-13)
+    agree(run.impacts.time[0], t, atol=1e-14)
+    agree(run.impacts.impulse[0, 0], 2.0 * (1 + e) * v, rtol=1e-13)
     if e > 0.0:
-        assert run.impacts.time[1] == pytest.approx(t + 2 * e * v / G, abs=1e-13)
+        agree(run.impacts.time[1], t + 2 * e * v / G, atol=1e-13)
     assert run["pin"].gap.min() >= -1e-15
     if e < 1.0:
-        assert run["pin"].gap[-1] == pytest.approx(0.0, abs=1e-14)
-        assert run["pin"].force[-1] == pytest.approx([2.0 * G, 0, 0], abs=1e-9)
+        agree(run["pin"].gap[-1], 0.0, atol=1e-14)
+        agree(run["pin"].force[-1], [2.0 * G, 0, 0], atol=1e-9)
     else:
-        assert np.ptp(run.total_energy) < 1e-14
+        agree(np.ptp(run.total_energy), 0.0, atol=1e-14)
 
 
 def rolling(where, mu, e, spin):
@@ -140,6 +142,9 @@ def drawer(y, L=0.4, mu=0.3):
     return scene
 
 
+@verifies(
+    "joints.Clearance", r"$m a = F (1 - 2\mu y/L)$, and it jams from $2\mu y = L$ on", "closed form"
+)
 @pytest.mark.parametrize("y", [0.3, 0.5, 0.66, 0.68, 0.8])
 def test_a_drawer_jams(y):
     # Both ends press with F y/L each, so friction takes 2 mu y/L of the force; above 1 it stays.
@@ -150,9 +155,9 @@ def test_a_drawer_jams(y):
     after = run.t > 0.1
     gained = run.velocity[-1, 0, 0] - run.velocity[after, 0, 0][0]
     pull = gained / (run.t[-1] - run.t[after][0])
-    assert pull == pytest.approx(max(0.0, 2.0 * (1.0 - share)), abs=1e-6)
+    agree(pull, max(0.0, 2.0 * (1.0 - share)), atol=1e-6)
     for end in ("guide.1", "guide.2"):
-        assert run[end].force[-1, 0] == pytest.approx(2.0 * y / 0.4, rel=1e-4)
+        agree(run[end].force[-1, 0], 2.0 * y / 0.4, rtol=1e-4)
 
 
 def test_a_ball_in_a_socket():

@@ -9,6 +9,7 @@ from scipy.interpolate import CubicSpline
 
 import carom
 from carom import GROUND, constraints, forces, joints
+from verified import agree, verifies
 
 FITS = carom.Options(project_start=True)
 
@@ -23,6 +24,7 @@ def two_wheels():
     return scene, first, second
 
 
+@verifies("constraints.Gear", r"$(I_1 + r^2 I_2)\,\ddot q = M$", "closed form")
 def test_gears_share_a_torque():
     # (I_1 + r^2 I_2) q'' = T: constant, so that the speed is exact; the second wheel takes r I_2 q''
     scene, first, second = two_wheels()
@@ -32,15 +34,18 @@ def test_gears_share_a_torque():
     solution = carom.simulate(scene, 1.0, step=0.02)
     inertia = 0.2 + 0.25 * 0.5
     (q, rate), (p, _) = solution.joint_coordinates(first), solution.joint_coordinates(second)
-    assert rate[-1, 0] == pytest.approx(3.0 / inertia, rel=1e-13)
-    np.testing.assert_allclose(p, -0.5 * q, atol=1e-13)
+    agree(rate[-1, 0], 3.0 / inertia, rtol=1e-13)
+    agree(p, -0.5 * q, atol=1e-13)
     # the multiplier acts on the second joint with the factor -1
-    np.testing.assert_allclose(
-        solution.constraint_forces[:, 0], 0.5 * 0.5 * 3.0 / inertia, rtol=1e-12
-    )
-    assert abs(solution.ledger.residual[-1]) < 1e-13 * solution.ledger.loads[-1]
+    agree(solution.constraint_forces[:, 0], 0.5 * 0.5 * 3.0 / inertia, rtol=1e-12)
+    agree(solution.ledger.residual[-1], 0.0, atol=1e-13 * solution.ledger.loads[-1])
 
 
+@verifies(
+    "constraints.Coupling",
+    "$x = F t^2/2(m + I/r^2)$; a differential takes $M$ by halves",
+    "closed form",
+)
 def test_a_rack_and_a_differential():
     # a rack of 2 kg driven by a wheel of radius .1: m r q'' from a force; a differential keeps the mean
     scene, first, second = two_wheels()
@@ -51,9 +56,9 @@ def test_a_rack_and_a_differential():
     solution = carom.simulate(scene, 1.0, step=0.05)
     expected = 0.5 / (2.0 + 0.2 / 0.01)  # x = F t^2 / (2 (m + I/r^2))
     # the turn of the wheel is of order 4: 3e-9
-    assert solution.position[-1, 2, 0] == pytest.approx(expected, rel=1e-8)
+    agree(solution.position[-1, 2, 0], expected, rtol=1e-8)
     turn = solution.joint_coordinates(first)[0][-1, 0]
-    assert turn == pytest.approx(10 * solution.position[-1, 2, 0], rel=1e-12)
+    agree(turn, 10 * solution.position[-1, 2, 0], rtol=1e-12)
 
     scene, first, second = two_wheels()
     third = scene.add_body(mass=1, inertia=(1, 1, 1.0), position=(2, 0, 0))
@@ -63,15 +68,16 @@ def test_a_rack_and_a_differential():
     solution = carom.simulate(scene, 1.0, step=0.05)
     w = solution.angular_velocity[-1, :, 2]
     # each side takes half of what the cage gives away: .2 w_1 = .5 w_2, and T = 1 on 1 + 4/(1/.2 + 1/.5)
-    assert w[2] == pytest.approx(1.0 / (1.0 + 4.0 / 7.0), rel=1e-12)
-    np.testing.assert_allclose(w[0] + w[1], 2.0 * w[2], rtol=1e-12)
-    np.testing.assert_allclose(0.2 * w[0], 0.5 * w[1], rtol=1e-12)
+    agree(w[2], 1.0 / (1.0 + 4.0 / 7.0), rtol=1e-12)
+    agree(w[0] + w[1], 2.0 * w[2], rtol=1e-12)
+    agree(0.2 * w[0], 0.5 * w[1], rtol=1e-12)
 
 
 def swing(t):
     return np.sin(3.0 * t), 3.0 * np.cos(3.0 * t), -9.0 * np.sin(3.0 * t)
 
 
+@verifies("constraints.Driver", r"$q = q(t)$, torque $(I_1 + r^2 I_2)\,\ddot q$", "closed form")
 @pytest.mark.parametrize("method", ["rk4", "paper"])
 @pytest.mark.parametrize(
     "motion",
@@ -88,14 +94,19 @@ def test_a_motor_moves_as_it_is_told(motion, method):
         told = motion(solution.t), motion(solution.t, 1), motion(solution.t, 2)
     else:
         told = np.array([swing(t) for t in solution.t]).T
-    np.testing.assert_allclose(q, told[0], atol=1e-13)
-    np.testing.assert_allclose(rate, told[1], atol=1e-12)
+    agree(q, told[0], atol=1e-13)
+    agree(rate, told[1], atol=1e-12)
     # its torque is (I_1 + r^2 I_2) q'' at any time, its work the kinetic energy
-    np.testing.assert_allclose(solution.constraint_forces[:, 1], 0.325 * told[2], atol=1e-11)
+    agree(solution.constraint_forces[:, 1], 0.325 * told[2], atol=1e-11)
     energy = 0.5 * 0.325 * (rate[-1] ** 2 - rate[0] ** 2)
-    assert solution.ledger.loads[-1] == pytest.approx(energy, abs=1e-5 * abs(energy))
+    agree(solution.ledger.loads[-1], energy, atol=1e-5 * abs(energy))
 
 
+@verifies(
+    "constraints.Driver",
+    r"slider-crank: $x = r \cos\omega t + \sqrt{l^2 - r^2 \sin^2\omega t}$",
+    "closed form",
+)
 def test_a_motor_of_constant_speed_turns_a_crank():
     # a slider-crank: x = r cos(wt) + sqrt(l^2 - r^2 sin^2(wt)), whatever the masses
     r, l, w = 0.1, 0.3, 5.0
@@ -112,9 +123,9 @@ def test_a_motor_of_constant_speed_turns_a_crank():
     solution = carom.simulate(scene, 2.0, step=0.005, options=FITS)
     turn = w * solution.t
     x = r * np.cos(turn) + np.sqrt(l**2 - (r * np.sin(turn)) ** 2)
-    np.testing.assert_allclose(solution.position[:, 2, 0], x, atol=1e-13)
+    agree(solution.position[:, 2, 0], x, atol=1e-13)
     gained = solution.total_energy - solution.total_energy[0]
-    np.testing.assert_allclose(solution.ledger.loads, gained, atol=2e-8 * np.ptp(gained))
+    agree(solution.ledger.loads, gained, atol=2e-8 * np.ptp(gained))
 
 
 def test_a_motor_that_does_not_fit_the_start_is_refused():
@@ -128,6 +139,11 @@ def test_a_motor_that_does_not_fit_the_start_is_refused():
         carom.simulate(scene, 1.0, step=0.1)
 
 
+@verifies(
+    "joints.RollingSphere",
+    r"$x = \tfrac{5}{14}\,g \sin\alpha\,t^2$, friction $\tfrac27 m g \sin\alpha$",
+    "closed form",
+)
 def test_a_sphere_rolls_down_an_incline():
     # x = 5/14 g sin(a) t^2, friction 2/7 m g sin(a)
     a, g = 0.3, 9.81
@@ -137,11 +153,9 @@ def test_a_sphere_rolls_down_an_incline():
     mobility = scene.check()
     assert (mobility.degrees_of_freedom, mobility.nonholonomic) == (3, 2)
     solution = carom.simulate(scene, 1.0, step=0.05)
-    assert solution.position[-1, 0, 0] == pytest.approx(5 / 14 * g * np.sin(a), rel=1e-12)
+    agree(solution.position[-1, 0, 0], 5 / 14 * g * np.sin(a), rtol=1e-12)
     force = solution.joint_reactions[-1, 0, :3]
-    np.testing.assert_allclose(
-        force, [-2 / 7 * 2 * g * np.sin(a), 0, 2 * g * np.cos(a)], atol=1e-12
-    )
+    agree(force, [-2 / 7 * 2 * g * np.sin(a), 0, 2 * g * np.cos(a)], atol=1e-12)
 
 
 def leaning_wheel():
@@ -172,13 +186,14 @@ def test_a_wheel_rolls_with_order_4():
     assert errors[-1] < 2e-8
 
 
+@verifies("joints.RollingDisc", r"$z = r\sqrt{1 - a_z^2}$", "closed form")
 def test_the_lowest_point_of_a_wheel_stays_on_the_plane():
     scene = leaning_wheel()
     solution = carom.simulate(scene, 0.5, step=0.005)
     z = solution.position[:, 0, 2]
     axis = carom.geometry.quaternion.rotate(solution.orientation[:, 0], np.array([0.0, 0.0, 1.0]))
     # the lowest point stays on the plane: z = r sqrt(1 - a_z^2)
-    np.testing.assert_allclose(z, 0.2 * np.sqrt(1.0 - axis[:, 2] ** 2), atol=1e-14)
+    agree(z, 0.2 * np.sqrt(1.0 - axis[:, 2] ** 2), atol=1e-14)
 
 
 def blade(t, poses):
@@ -189,6 +204,11 @@ def blade(t, poses):
     return out
 
 
+@verifies(
+    "constraints.Rows",
+    r"sled on a slope: $y = \frac{g \sin\alpha}{2\omega^2}(\omega t - \tfrac12\sin 2\omega t)$",
+    "closed form",
+)
 @pytest.mark.parametrize("row", [blade, numba.njit(blade)], ids=["plain", "compiled"])
 def test_rows_of_the_user_are_a_knife_edge(row):
     # a sled on an incline: x = g s/(2 w^2) sin^2 wt, y = g s/(2 w^2) (wt - sin(2wt)/2)
@@ -200,7 +220,7 @@ def test_rows_of_the_user_are_a_knife_edge(row):
     solution = carom.simulate(scene, 4.0, step=0.01)
     f = 9.81 * np.sin(slope) / (2 * w**2)
     expected = f * np.sin(4 * w) ** 2, f * (4 * w - 0.5 * np.sin(8 * w))
-    np.testing.assert_allclose(solution.position[-1, 0, :2], expected, atol=1e-8)
+    agree(solution.position[-1, 0, :2], expected, atol=1e-8)
 
 
 def test_holonomic_rows_are_returned_to():

@@ -6,6 +6,7 @@ from scipy.integrate import solve_ivp
 
 import carom
 from carom import GROUND, constraints, forces, joints
+from verified import agree, verifies
 
 TOLERANCES = 1e-6, 1e-10
 I, G = 0.2, 9.81
@@ -25,6 +26,11 @@ def closes(solution, scale, rtol):
     assert np.abs(solution.ledger.residual).max() <= max(10.0 * rtol, 1e-13) * scale
 
 
+@verifies(
+    "constraints.Driver",
+    r"$I\dot\omega = M$ up to its rate; half of the work is heat",
+    "closed form",
+)
 @pytest.mark.parametrize("rtol", TOLERANCES)
 @pytest.mark.parametrize("way", [1, -1])
 def test_a_start_takes_the_limit_and_its_heat_is_half_of_the_work(rtol, way):
@@ -35,13 +41,13 @@ def test_a_start_takes_the_limit_and_its_heat_is_half_of_the_work(rtol, way):
     run = carom.simulate(scene, 2.0, rtol=rtol)
     t = I * abs(rate) / limit
     closes(run, 1.0, rtol)
-    assert run.angular_velocity[-1, 0, 2] == pytest.approx(rate, abs=1e-14)
-    assert run["axle"].coordinate[-1] == pytest.approx(rate * (2.0 - 0.5 * t), abs=1e-12)
-    assert run.ledger.loads[-1] == pytest.approx(limit * abs(rate) * t, abs=1e-12)
-    assert run.ledger.friction[-1] == pytest.approx(-0.5 * I * rate**2, abs=1e-12)
+    agree(run.angular_velocity[-1, 0, 2], rate, atol=1e-14)
+    agree(run["axle"].coordinate[-1], rate * (2.0 - 0.5 * t), atol=1e-12)
+    agree(run.ledger.loads[-1], limit * abs(rate) * t, atol=1e-12)
+    agree(run.ledger.friction[-1], -0.5 * I * rate**2, atol=1e-12)
     torque = run["motor"].torque
-    assert torque[1] == pytest.approx(limit * way, abs=1e-14)
-    assert torque[-1] == pytest.approx(0.0, abs=1e-9)
+    agree(torque[1], limit * way, atol=1e-14)
+    agree(torque[-1], 0.0, atol=1e-9)
 
 
 @pytest.mark.parametrize("rtol", TOLERANCES)
@@ -135,6 +141,11 @@ def own_integration(rate, limit, end):
     return y
 
 
+@verifies(
+    "constraints.Driver",
+    "a pendulum whose motor slips and holds",
+    "own integration: SciPy with events",
+)
 @pytest.mark.parametrize("rtol", TOLERANCES)
 @pytest.mark.parametrize(("rate", "limit"), [(1.0, 3.0), (1.0, 6.0), (-1.5, 4.5)])
 def test_a_pendulum_with_a_weak_motor(rate, limit, rtol):
@@ -142,8 +153,8 @@ def test_a_pendulum_with_a_weak_motor(rate, limit, rtol):
     run = carom.simulate(pendulum(rate, limit), 3.0, rtol=rtol)
     closes(run, 10.0, rtol)
     # the motion near the top multiplies errors by up to a hundred
-    assert run["hinge"].coordinate[-1] == pytest.approx(angle, abs=300.0 * rtol)
-    assert run["hinge"].rate[-1] == pytest.approx(speed, abs=300.0 * rtol)
+    agree(run["hinge"].coordinate[-1], angle, atol=300.0 * rtol)
+    agree(run["hinge"].rate[-1], speed, atol=300.0 * rtol)
 
 
 @pytest.mark.parametrize("wall", ["stop", "contact"])
@@ -201,6 +212,7 @@ def test_a_motion_that_is_a_polynomial():
     assert run.angular_velocity[-1, 0, 2] == pytest.approx(float(spline(2.0, 1)), abs=1e-5)
 
 
+@verifies("forces.Drive", r"$I\dot\omega = M(\omega_0 - \omega)$", "own integration: SciPy")
 def test_a_torque_speed_line():
     # a limit that falls by a law of the slip: I w' = mu(rate - w), by an integration of one's own
     law, rate = carom.Friction(0.6, 0.2, speed=1.0), 3.0
@@ -211,7 +223,7 @@ def test_a_torque_speed_line():
     how = {"rtol": 1e-12, "atol": 1e-13}
     found = solve_ivp(lambda t, y: [law(rate - y[0]) / I], (0.0, end), [0.0], **how)
     assert 1.0 < found.y[0, -1] < 0.9 * rate
-    assert run.angular_velocity[-1, 0, 2] == pytest.approx(found.y[0, -1], abs=1e-7)
+    agree(run.angular_velocity[-1, 0, 2], found.y[0, -1], atol=1e-7)
     closes(run, 1.0, 1e-9)
 
 

@@ -8,6 +8,7 @@ import carom
 from carom import GROUND, joints
 from carom.visual.bodies import links_of
 from files.compare import goes_on
+from verified import agree, verifies
 
 G, R, K = 9.81, 0.1, 500.0
 OVER = carom.Pulley(GROUND, R, (0, 1, 0), center=(0, 0, 0))
@@ -26,6 +27,7 @@ def pair(masses, pulley=OVER, **rope):
     return scene
 
 
+@verifies("add_rope(stiffness=)", r"$\mu\ddot s = 2\mu g - k s$", "closed form")
 @pytest.mark.parametrize(("how", "error"), HOW)
 def test_atwood(how, error):
     """Two loads stretch the rope as one of the reduced mass mu: mu s'' = 2 mu g - k s."""
@@ -34,11 +36,11 @@ def test_atwood(how, error):
     stretch = 2 * mu * G / K * (1 - np.cos(np.sqrt(K / mu) * s.t))
     middle = -1 - 0.5 * G * s.t**2 + 2 * (K / 4.5) * np.array([_twice(mu, t) for t in s.t])
     down = -2.0 - s["a"].position[:, 2] - s["b"].position[:, 2]
-    np.testing.assert_allclose(down, stretch, atol=error)
-    np.testing.assert_allclose(s["rope"].tension, K * stretch, atol=K * error)
+    agree(down, stretch, atol=error)
+    agree(s["rope"].tension, K * stretch, atol=K * error)
     z = (2.0 * s["a"].position[:, 2] + 2.5 * s["b"].position[:, 2]) / 4.5
-    np.testing.assert_allclose(z, middle, atol=10 * error)
-    np.testing.assert_allclose(s.total_energy, s.total_energy[0], atol=max(1e-12, 100 * error))
+    agree(z, middle, atol=10 * error)
+    agree(s.total_energy, s.total_energy[0], atol=max(1e-12, 100 * error))
     assert not len(s.impacts.time)
 
 
@@ -48,6 +50,11 @@ def _twice(mu, t):
     return 2 * mu * G / K * (0.5 * t * t - (1 - np.cos(w * t)) / w**2)
 
 
+@verifies(
+    "add_rope(stiffness=)",
+    "three linear equations, by the exponential of their matrix",
+    "own integration",
+)
 @pytest.mark.parametrize(("how", "error"), HOW)
 def test_a_wheel_that_it_turns(how, error):
     """Both parts have the stiffness k way/1 m; three linear equations, by the exponential of their matrix.
@@ -66,13 +73,13 @@ def test_a_wheel_that_it_turns(how, error):
     A[3:6, :3] = -np.linalg.solve(M, k * stretches.T @ stretches)
     A[3:6, 6] = np.linalg.solve(M, np.array([2.0, 2.5, 0]) * G - stretches.T @ (T0, T0))
     y = np.array([expm(A * t)[:, 6] for t in s.t])
-    np.testing.assert_allclose(-1 - s["a"].position[:, 2], y[:, 0], atol=error)
-    np.testing.assert_allclose(-1 - s["b"].position[:, 2], y[:, 1], atol=error)
-    np.testing.assert_allclose(R * s["hinge"].coordinate, y[:, 2], atol=error)
+    agree(-1 - s["a"].position[:, 2], y[:, 0], atol=error)
+    agree(-1 - s["b"].position[:, 2], y[:, 1], atol=error)
+    agree(R * s["hinge"].coordinate, y[:, 2], atol=error)
     for name, one in zip(("rope.1", "rope.2"), stretches):
-        np.testing.assert_allclose(s[name].tension, T0 + k * (y[:, :3] @ one), atol=10 * k * error)
+        agree(s[name].tension, T0 + k * (y[:, :3] @ one), atol=10 * k * error)
     carried = s["rope.1"].tension + s["rope.2"].tension + 0.5 * G
-    np.testing.assert_allclose(s["hinge"].force[:, 2], carried, rtol=1e-9)
+    agree(s["hinge"].force[:, 2], carried, rtol=1e-9)
 
 
 @pytest.mark.parametrize(("how", "error"), HOW)
@@ -136,11 +143,12 @@ def test_slack(how, error):
     assert not len(s.impacts.time)
 
 
+@verifies("add_rope(damping=)", "the work of the damper is what the energy loses", "invariant")
 def test_damping_is_in_the_ledger():
     s = carom.simulate(pair((2.0, 2.5), damping=4.0), 3.0)
     mu = 2.0 * 2.5 / 4.5
     lost = -s.ledger.loads[-1]
-    np.testing.assert_allclose(s.total_energy[0] - s.total_energy[-1], lost, rtol=1e-6)
+    agree(s.total_energy[0] - s.total_energy[-1], lost, rtol=1e-6)
     np.testing.assert_allclose(
         s["rope"].tension[-1], 2 * mu * G, rtol=5e-2
     )  # the ring has died away

@@ -11,6 +11,7 @@ from scipy.spatial.transform import Rotation
 import carom
 from carom.geometry.quaternion import matrix
 from carom.scene.joints import JOINTS, Distance, KnifeEdge
+from verified import agree, verifies
 
 #: the child is a ball at (0, 0, 1) that turns with the parent, a plate at the origin, about the origin
 CHILD, AXIS, TURN = np.array([0.0, 0.0, 1.0]), np.array([0.6, 0.0, 0.8]), (0.3, -0.2, 0.4)
@@ -91,12 +92,17 @@ def measured(joint, s):
     return np.stack(slides + turns if d.guide == "plane" else turns + slides, axis=1)
 
 
+@verifies(
+    "joints.{kind.__name__}",
+    "energy and both momenta are kept; coordinates are those of the attitudes",
+    "invariant",
+)
 @pytest.mark.parametrize("kind", JOINTS, ids=lambda kind: kind.__name__)
 def test_what_a_joint_keeps(kind):
     scene, joint = joined(kind)
     s = carom.simulate(scene, 0.5, step=5e-3, method="rk8")
     # The forces of a joint do no work, and are equal and opposite. Of order 8: h^8 is round-off.
-    np.testing.assert_allclose(s.total_energy, s.total_energy[0], rtol=0, atol=1e-11)
+    agree(s.total_energy, s.total_energy[0], atol=1e-11)
     if kind is not KnifeEdge:
         mass, R = np.array([b.mass for b in scene.bodies]), carom.geometry.quaternion
         inertia = np.array([b.inertia for b in scene.bodies])
@@ -105,7 +111,7 @@ def test_what_a_joint_keeps(kind):
         linear = mass[:, None] * s.velocity
         angular = spin + np.cross(s.position, linear)
         for momentum in (linear.sum(axis=1), angular.sum(axis=1)):
-            np.testing.assert_allclose(momentum, momentum[:1] + 0 * momentum, rtol=0, atol=1e-11)
+            agree(momentum, momentum[:1] + 0 * momentum, atol=1e-11)
     for error in s.constraint_errors:  # returned to round-off in each step
         assert np.max(error) < 1e-12
     # Coordinates are as many as are named, and their rates are their derivatives.
@@ -116,5 +122,5 @@ def test_what_a_joint_keeps(kind):
         np.testing.assert_allclose(slope, rate[1:-1], rtol=0, atol=5e-3)  # h^2 q'''/6
     if q.size:  # curves are splines of their functions
         atol = 1e-6 if "Curve" in kind.__name__ else 1e-12
-        np.testing.assert_allclose(q, measured(joint, s), rtol=0, atol=atol)
+        agree(q, measured(joint, s), atol=atol)
         assert np.max(np.abs(q - q[0])) > (1e-3 if kind is not Distance else -1.0)

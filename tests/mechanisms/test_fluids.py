@@ -10,6 +10,7 @@ import carom
 from carom import forces
 from carom.scene.fluids import drag_coefficient, mean_area
 from carom.visual.surfaces import surface
+from verified import agree, verifies
 
 G = 9.81
 
@@ -24,19 +25,19 @@ def thrown(force, velocity=(0, 0, 0), spin=(0, 0, 0), gravity=G, shape=None, mas
     return scene
 
 
+@verifies("forces.Drag", r"$v = v_t \tanh(g t/v_t)$", "closed form")
 def test_a_fall_with_drag():
     """V = v_t tanh(g t/v_t), z = -v_t^2/g log cosh(g t/v_t), v_t^2 = 2 m g/(rho c A)."""
     s = carom.simulate(thrown(forces.Drag(density=1.5, coefficient=0.4)), 2.0, rtol=1e-10)
     terminal = np.sqrt(2 * 0.2 * G / (1.5 * 0.4 * np.pi * 0.1**2))
-    np.testing.assert_allclose(
-        s.velocity[:, 0, 2], -terminal * np.tanh(G * s.t / terminal), atol=1e-8
-    )
+    agree(s.velocity[:, 0, 2], -terminal * np.tanh(G * s.t / terminal), atol=1e-8)
     height = -(terminal**2) / G * np.log(np.cosh(G * s.t / terminal))
-    np.testing.assert_allclose(s.position[:, 0, 2], height, atol=1e-8)
-    np.testing.assert_allclose(s.ledger.residual, 0.0, atol=1e-9)
+    agree(s.position[:, 0, 2], height, atol=1e-8)
+    agree(s.ledger.residual, 0.0, atol=1e-9)
     assert np.all(np.diff(s.ledger.loads) <= 0.0)
 
 
+@verifies("forces.Wind", "$u = u_0/(1 + k u_0 t/m)$", "closed form")
 def test_a_body_is_carried_by_the_wind():
     """The velocity u relative to the wind falls as u_0/(1 + k u_0 t/m)."""
     wind = np.array([3.0, 0.0, 0.0])
@@ -44,9 +45,9 @@ def test_a_body_is_carried_by_the_wind():
     s = carom.simulate(thrown(force, gravity=0.0), 5.0, rtol=1e-10)
     k = 0.5 * 1.2 * 0.47 * np.pi * 0.1**2
     expected = 3.0 - 3.0 / (1.0 + k * 3.0 * s.t / 0.2)
-    np.testing.assert_allclose(s.velocity[:, 0, 0], expected, atol=1e-8)
+    agree(s.velocity[:, 0, 0], expected, atol=1e-8)
     first = s["fluid"].force[0]
-    np.testing.assert_allclose(first, k * 9.0 * np.array([1.0, 0, 0]), rtol=1e-12)
+    agree(first, k * 9.0 * np.array([1.0, 0, 0]), rtol=1e-12)
 
 
 def vortex(t, x):
@@ -56,6 +57,7 @@ def vortex(t, x):
     return out
 
 
+@verifies("forces.Wind", "a vortex that changes in time", "own integration: SciPy")
 @pytest.mark.parametrize("compiled", [False, True])
 def test_a_field_of_wind(compiled):
     """Against SciPy's integrator."""
@@ -71,31 +73,34 @@ def test_a_field_of_wind(compiled):
         return np.append(y[3:], -k * np.linalg.norm(u) * u)
 
     known = solve_ivp(rates, (0, 2), [1, 0, 0, 0, 0, 0], method="DOP853", rtol=1e-12, atol=1e-12)
-    np.testing.assert_allclose(s.position[-1, 0], known.y[:3, -1], atol=1e-6)
+    agree(s.position[-1, 0], known.y[:3, -1], atol=1e-6)
 
 
+@verifies("forces.Magnus", r"a circle of radius $m v/(S\omega)$", "closed form")
 def test_a_ball_that_turns_flies_in_a_circle():
     """S w x v with w across v: radius m v/(S w), at constant speed and energy."""
     s = carom.simulate(
         thrown(forces.Magnus(density=1.2), (4, 0, 0), (0, 0, 50), gravity=0.0), 3.0, rtol=1e-10
     )
     turn = 0.5 * 1.2 * np.pi * 0.1**3 * 50 / 0.2
-    np.testing.assert_allclose(s.position[:, 0, 0], 4 / turn * np.sin(turn * s.t), atol=1e-8)
-    np.testing.assert_allclose(s.position[:, 0, 1], 4 / turn * (1 - np.cos(turn * s.t)), atol=1e-8)
-    np.testing.assert_allclose(s.total_energy, s.total_energy[0], rtol=1e-9)
-    np.testing.assert_allclose(s.ledger.loads, 0.0, atol=1e-9)
+    agree(s.position[:, 0, 0], 4 / turn * np.sin(turn * s.t), atol=1e-8)
+    agree(s.position[:, 0, 1], 4 / turn * (1 - np.cos(turn * s.t)), atol=1e-8)
+    agree(s.total_energy, s.total_energy[0], rtol=1e-9)
+    agree(s.ledger.loads, 0.0, atol=1e-9)
 
 
+@verifies("forces.Buoyancy", r"$a = (\rho V/m - 1)\,g$", "closed form")
 def test_a_ball_under_water_rises():
     """At (rho V/m - 1) g, with its potential in the ledger."""
     s = carom.simulate(thrown(forces.Buoyancy(), mass=2.0), 1.0)
     volume = 4 / 3 * np.pi * 0.1**3
     up = (1000 * volume / 2.0 - 1) * G
-    np.testing.assert_allclose(s.position[:, 0, 2], 0.5 * up * s.t**2, atol=1e-10)
-    np.testing.assert_allclose(s.total_energy, 0.0, atol=1e-9)
-    np.testing.assert_allclose(s.ledger.loads, 0.0, atol=1e-12)
+    agree(s.position[:, 0, 2], 0.5 * up * s.t**2, atol=1e-10)
+    agree(s.total_energy, 0.0, atol=1e-9)
+    agree(s.ledger.loads, 0.0, atol=1e-12)
 
 
+@verifies("forces.Buoyancy", "rests where it displaces its mass", "closed form")
 @pytest.mark.parametrize("level", [0.0, 0.35])
 def test_a_ball_floats(level):
     """It dips, comes up again and keeps its energy; where it displaces its mass it stays at rest."""
@@ -104,11 +109,11 @@ def test_a_ball_floats(level):
     scene.replace("ball", position=(0, 0, level + 0.3))
     s = carom.simulate(scene, 2.0, rtol=1e-9)
     assert s.position[:, 0, 2].min() < level - r < level + r < s.position[:, 0, 2].max()
-    np.testing.assert_allclose(s.total_energy, s.total_energy[0], rtol=1e-7)
+    agree(s.total_energy, s.total_energy[0], rtol=1e-7)
     h = brentq(lambda h: 1000 * np.pi * h * h * (3 * r - h) / 3 - mass, 0.0, 2 * r, xtol=1e-15)
     scene.replace("ball", position=(0, 0, level + r - h), velocity=(0, 0, 0))
     rest = carom.simulate(scene, 2.0)
-    np.testing.assert_allclose(rest.position[:, 0, 2], level + r - h, atol=1e-10)
+    agree(rest.position[:, 0, 2], level + r - h, atol=1e-10)
 
 
 @pytest.mark.parametrize(

@@ -6,6 +6,7 @@ from mechanism_scenes import orders, run
 
 import carom
 from carom import GROUND, Scene, forces, joints
+from verified import agree, verifies
 
 M, K = 2.0, 50.0
 OMEGA = np.sqrt(K / M)
@@ -40,17 +41,21 @@ def test_oscillator(method, order, h, damping, slider):
     assert np.max(np.abs(ends[-1].position[-1, 0, 1:])) < 1e-15
 
 
+@verifies("forces.Spring", "the work of the damper is what the energy loses", "invariant")
 def test_damper_takes_the_energy():
     s = carom.simulate(oscillator(3.0), 2.0, step=0.005)
     start = 0.5 * K * 0.1**2
-    np.testing.assert_allclose(s.total_energy[0], start, rtol=1e-14)
+    agree(s.total_energy[0], start, rtol=1e-14)
     lost = s.total_energy - start
-    np.testing.assert_allclose(s.ledger.loads, lost, rtol=0, atol=1e-8 * start)
+    agree(s.ledger.loads, lost, atol=1e-8 * start)
     assert np.all(np.diff(s.ledger.loads) <= 0.0)
     assert s.ledger.loads[-1] < -0.9 * start
-    np.testing.assert_allclose(s.ledger.residual, 0.0, rtol=0, atol=1e-8 * start)
+    agree(s.ledger.residual, 0.0, atol=1e-8 * start)
 
 
+@verifies(
+    "forces.Spring", r"$s = s_0 \cos\sqrt{k/\mu}\,t$, $\mu = m_1 m_2/(m_1 + m_2)$", "closed form"
+)
 def test_spring_between_two_bodies_moves_them_about_their_centre():
     """Reduced mass m1 m2/(m1 + m2); momentum stays zero."""
     scene = Scene(gravity=(0, 0, 0))
@@ -61,9 +66,9 @@ def test_spring_between_two_bodies_moves_them_about_their_centre():
     s = carom.simulate(scene, 1.0, step=0.005)
     w = np.sqrt(30.0 / 0.75)
     gap = s.position[:, 1, 0] - s.position[:, 0, 0]
-    np.testing.assert_allclose(gap, 1.0 + 0.2 * np.cos(w * s.t), rtol=0, atol=1e-7)
+    agree(gap, 1.0 + 0.2 * np.cos(w * s.t), atol=1e-7)
     momentum = s.velocity[:, 0] + 3.0 * s.velocity[:, 1]
-    np.testing.assert_allclose(momentum, 0.0, rtol=0, atol=1e-14)
+    agree(momentum, 0.0, atol=1e-14)
 
 
 def test_spring_off_the_centre_turns_the_body():
@@ -81,14 +86,15 @@ def test_spring_off_the_centre_turns_the_body():
     assert angle == pytest.approx(-1e-3 * (1.0 - np.cos(w)), rel=1e-5)
 
 
+@verifies("forces.Torque", r"$\omega = M t/J$, work $M\varphi$", "closed form")
 def test_torque_on_a_free_body_and_its_work():
     scene = Scene(gravity=(0, 0, 0))
     body = scene.add_body(mass=1.0, inertia=[0.5] * 3)
     scene.add_force(forces.Torque((0, 0, 2.0)), body)
     s = carom.simulate(scene, 1.5, step=0.01)
-    np.testing.assert_allclose(s.angular_velocity[:, 0, 2], 4.0 * s.t, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(s.ledger.loads, 2.0 * 2.0 * s.t**2, rtol=0, atol=1e-9)  # angle 2 t^2
-    np.testing.assert_allclose(s.ledger.residual, 0.0, rtol=0, atol=1e-9)
+    agree(s.angular_velocity[:, 0, 2], 4.0 * s.t, atol=1e-12)
+    agree(s.ledger.loads, 2.0 * 2.0 * s.t**2, atol=1e-9)  # angle 2 t^2
+    agree(s.ledger.residual, 0.0, atol=1e-9)
 
 
 def test_torque_between_bodies_keeps_angular_momentum():
@@ -107,6 +113,8 @@ def test_torque_between_bodies_keeps_angular_momentum():
     np.testing.assert_allclose(s.ledger.residual, 0.0, rtol=0, atol=1e-7)
 
 
+@verifies("joints.Prismatic", "$x = F t^2/2m$; reactions by the balance of forces", "closed form")
+@verifies("forces.Force", "$x = F t^2/2m$, work $F x$", "closed form")
 @pytest.mark.parametrize("method", ["rk4", "paper"])
 def test_constant_force_on_a_slider(method):
     scene = Scene(gravity=(0, 0, -9.81))
@@ -114,16 +122,12 @@ def test_constant_force_on_a_slider(method):
     scene.add_joint(joints.Prismatic((1, 0, 0)), GROUND, body)
     scene.add_force(forces.Force((3.0, 5.0, 0), anchor=(0, 0, 0.2)), body)
     s = carom.simulate(scene, 1.0, step=0.02, method=method)
-    np.testing.assert_allclose(
-        s.position[:, 0], s.t[:, None] ** 2 * [0.75, 0, 0], rtol=0, atol=1e-12
-    )
-    np.testing.assert_allclose(s.ledger.loads, 3.0 * 0.75 * s.t**2, rtol=0, atol=1e-11)
+    agree(s.position[:, 0], s.t[:, None] ** 2 * [0.75, 0, 0], atol=1e-12)
+    agree(s.ledger.loads, 3.0 * 0.75 * s.t**2, atol=1e-11)
     f = s.joint_reactions[:, 0]
-    np.testing.assert_allclose(
-        f[:, :3], np.tile([0, -5.0, 2 * 9.81], (len(f), 1)), rtol=0, atol=1e-9
-    )
+    agree(f[:, :3], np.tile([0, -5.0, 2 * 9.81], (len(f), 1)), atol=1e-9)
     # torque of the guide: against r x F = (0, 0, .2) x (3, 5, 0) = (-1, .6, 0)
-    np.testing.assert_allclose(f[:, 3:], np.tile([1.0, -0.6, 0], (len(f), 1)), rtol=0, atol=1e-9)
+    agree(f[:, 3:], np.tile([1.0, -0.6, 0], (len(f), 1)), atol=1e-9)
 
 
 def test_equilibrium_stays():

@@ -12,6 +12,7 @@ from scipy.optimize import brentq
 
 import carom
 from carom import forces, joints
+from verified import agree, verifies
 
 G = 9.81
 RTOLS = [1e-6, 1e-10]
@@ -96,6 +97,11 @@ def swung(duration: float) -> np.ndarray:
     return np.array(y)
 
 
+@verifies(
+    "forces.JointFriction",
+    r"$M = \mu r \lvert R \rvert$ with the reaction $R$ of the pin",
+    "own integration: SciPy",
+)
 @pytest.mark.parametrize("rtol", RTOLS)
 @pytest.mark.parametrize(("turned", "looped"), [(False, False), (True, False), (False, True)])
 def test_pendulum_on_a_pin(turned, looped, rtol):
@@ -103,8 +109,8 @@ def test_pendulum_on_a_pin(turned, looped, rtol):
     angle, rate = swung(3.0)
     # measured: 1e-8, 2e-13 at 1e-6, 1e-10
     sign = -1.0 if turned else 1.0
-    assert_allclose(START + sign * solution["pin"].coordinate[-1], angle, atol=rtol)
-    assert_allclose(-solution["rod"].angular_velocity[-1, 1], rate, atol=10.0 * rtol)
+    agree(START + sign * solution["pin"].coordinate[-1], angle, atol=rtol)
+    agree(-solution["rod"].angular_velocity[-1, 1], rate, atol=10.0 * rtol)
 
 
 def test_friction_of_a_pin_is_mu_r_times_its_reaction():
@@ -134,6 +140,7 @@ def test_rod_sticks_within_the_circle_of_friction(share, sticks):
         assert_allclose(held, MASS * G * LENGTH * math.sin(angle), rtol=1e-9)
 
 
+@verifies("forces.JointFriction", r"$\omega = \omega_0/(1 + k\omega_0 t)$", "closed form")
 @pytest.mark.parametrize("rtol", RTOLS)
 def test_eccentric_rotor_slows_by_its_own_load(rtol):
     # J w' = -mu r m e sqrt(w^4 + w'^2), so w' = -k w^2 with J k = mu r m e sqrt(1 + k^2), w = w0/(1 + k w0 t)
@@ -149,7 +156,7 @@ def test_eccentric_rotor_slows_by_its_own_load(rtol):
     J, f = MOMENT + MASS * e**2, MU * RADIUS * MASS * e
     k = f / math.sqrt(J**2 - f**2)
     rate = spin / (1.0 + k * spin * solution.t)
-    assert_allclose(solution["rotor"].angular_velocity[:, 2], rate, rtol=100.0 * rtol)
+    agree(solution["rotor"].angular_velocity[:, 2], rate, rtol=100.0 * rtol)
 
 
 @pytest.mark.parametrize("rtol", RTOLS)
@@ -195,14 +202,15 @@ def drawer(
     return made
 
 
+@verifies("forces.JointFriction", r"$m a = P (1 - 2\mu y/L)$", "closed form")
 @pytest.mark.parametrize("share", [0.2, 0.9])
 def test_drawer_slides_below_its_limit(share):
     # N at both ends is P y/L: friction 2 mu y P/L
     beside = share * WIDTH / (2.0 * MU)
     solution = simulated(drawer(beside, 10.0), 1.0, rtol=1e-10)
     a = 10.0 * (1.0 - share) / MASS
-    assert_allclose(solution["guide"].coordinate, a * solution.t**2 / 2.0, atol=1e-10)
-    assert_allclose(np.abs(solution["friction"].force[1:]), 10.0 * share, rtol=1e-9)
+    agree(solution["guide"].coordinate, a * solution.t**2 / 2.0, atol=1e-10)
+    agree(np.abs(solution["friction"].force[1:]), 10.0 * share, rtol=1e-9)
 
 
 @pytest.mark.parametrize("pull", [0.1, 1e4])
@@ -296,6 +304,7 @@ def test_moment_of_a_screw(raises, sign):
         assert not moves or (angle > 0.0) == raises
 
 
+@verifies("forces.JointFriction", r"$I a = M - F r \tan(\lambda + \varphi)$", "closed form")
 def test_efficiency_of_a_screw():
     # tan(lead)/tan(lead + phi) of the work of the moment lifts the nut and moves it; by energies
     lead = 0.2
@@ -305,9 +314,9 @@ def test_efficiency_of_a_screw():
     # F on the thread is W + m h a; I a = M - F r tan(lead + phi)
     arm = RADIUS * math.tan(lead + math.atan(MU))
     a = (moment - MASS * G * arm) / (MOMENT + MASS * h * arm)
-    assert_allclose(angle, a * 0.5**2 / 2.0, rtol=1e-9)
+    agree(angle, a * 0.5**2 / 2.0, rtol=1e-9)
     heat = moment * angle - MASS * G * h * angle - 0.5 * (MOMENT + MASS * h * h) * (a * 0.5) ** 2
-    assert_allclose(-solution.ledger.friction[-1], heat, rtol=1e-8)
+    agree(-solution.ledger.friction[-1], heat, rtol=1e-8)
 
 
 def test_a_joint_locks_where_friction_adds_to_its_own_load():

@@ -10,6 +10,7 @@ import carom
 from carom import GROUND, constraints, forces, joints
 from carom.collision.api import nearest_points
 from files.compare import goes_on
+from verified import agree, verifies
 
 MODULE, ANGLE = 0.002, math.radians(20.0)
 UPRIGHT = np.array([1.0, 0, 0, 0])
@@ -136,6 +137,11 @@ def gears(
     return scene
 
 
+@verifies(
+    "Profile.involute",
+    r"$\omega_2 = -\omega_1 n_1/n_2$, force $M_2/r_{b2}$ along the line of action",
+    "closed form",
+)
 @pytest.mark.few(2)
 @pytest.mark.parametrize("how", [{"rtol": 1e-8}, {"step": 1e-3}])
 @pytest.mark.parametrize(("n1", "n2"), [(20, 30), (40, 25), (30, 90)])
@@ -148,19 +154,19 @@ def test_the_ratio_of_involute_gears_is_constant(n1, n2, how):
     )  # with given steps a tooth may leave some microseconds before the next strikes
     assert np.mean(on[1:-1]) > (0.999 if "rtol" in how else 0.94)
     ratio = s["hinge b"].rate / s["hinge a"].rate
-    np.testing.assert_allclose(ratio[on], -n1 / n2, atol=1e-9)
-    np.testing.assert_allclose(s["hinge b"].coordinate, -1.5 * s.t / 0.15 * n1 / n2, atol=1e-9)
+    agree(ratio[on], -n1 / n2, atol=1e-9)
+    agree(s["hinge b"].coordinate, -1.5 * s.t / 0.15 * n1 / n2, atol=1e-9)
     base = 0.5 * MODULE * n2 * math.cos(ANGLE)
     on[[0, -1]] = False
-    np.testing.assert_allclose(s["mesh"].force[on, 0], 0.05 / base, rtol=1e-6)
-    np.testing.assert_allclose(s["motor"].torque[on], 0.05 * n1 / n2, rtol=1e-6)
+    agree(s["mesh"].force[on, 0], 0.05 / base, rtol=1e-6)
+    agree(s["motor"].torque[on], 0.05 * n1 / n2, rtol=1e-6)
     # the line of action is at the pressure angle to the common tangent
     force = s["hinge b"].force[on]
-    np.testing.assert_allclose(np.abs(force[:, 0] / force[:, 1]), math.tan(ANGLE), rtol=1e-6)
+    agree(np.abs(force[:, 0] / force[:, 1]), math.tan(ANGLE), rtol=1e-6)
     # n1 1.5 rad of teeth have come into mesh, and as many have left it
     passed = 1.5 * n1 / (2.0 * math.pi)
     assert abs(np.sum(s.events.kind == "opens") / 2 - passed) < 2.0
-    assert np.max(np.abs(s["mesh"].gap)) < 1e-12
+    agree(s["mesh"].gap, 0.0, atol=1e-12)
 
 
 def test_gears_keep_their_ratio_at_a_larger_distance():
@@ -309,6 +315,9 @@ def geneva_wheel(clearance=3e-4):
     return carom.Profile(points, 0.01, corners=corners), np.array(arc[-1])
 
 
+@verifies(
+    "Profile", r"Geneva wheel: $\varphi = \arctan(y/x) - \arcsin(p/\lvert r\rvert)$", "closed form"
+)
 def test_a_geneva_wheel_follows_its_pin():
     """The pin presses the side of a slot: its angle is that of the pin less asin(play/distance)."""
     shape, _ = geneva_wheel()
@@ -331,9 +340,9 @@ def test_a_geneva_wheel_follows_its_pin():
     x, y = APART - ARM * np.cos(turn), ARM * np.sin(turn)
     angle = np.arctan2(y, x) - np.arcsin(PLAY / np.hypot(x, y)) + 0.25 * math.pi
     within = (turn > math.radians(-38)) & (turn < math.radians(42))
-    np.testing.assert_allclose(s["axle"].coordinate[within], angle[within], atol=1e-8)
+    agree(s["axle"].coordinate[within], angle[within], atol=1e-8)
     assert abs(s["axle"].coordinate[-1] - 0.5 * math.pi) < 0.01
-    assert abs(s["axle"].rate[-1]) < 1e-60
+    agree(s["axle"].rate[-1], 0.0, atol=1e-60)
 
 
 @pytest.mark.parametrize("way", [-1.0, 1.0])

@@ -9,6 +9,7 @@ from scipy.interpolate import CubicSpline
 
 import carom
 from carom import GROUND, forces, joints
+from verified import agree, verifies
 
 
 def block(speed=0.0, mass=1.0):
@@ -44,6 +45,8 @@ def test_a_clock_spring_counts_turns():
     assert errors[-1] < 2e-3
 
 
+@verifies("forces.JointSpring", r"$m\ddot q + c\dot q + k q = \sin t$", "closed form")
+@verifies("forces.JointForce", r"$m\ddot q + c\dot q + k q = \sin t$", "closed form")
 def test_a_damped_spring_with_a_motor_closes_the_ledger():
     # m q'' + c q' + k q = sin t: q by its particular and free parts
     m, c, k = 2.0, 0.4, 2.0
@@ -56,8 +59,8 @@ def test_a_damped_spring_with_a_motor_closes_the_ledger():
         s, w = c / (2 * m), np.sqrt(k / m - (c / (2 * m)) ** 2)
         t = solution.t
         free = np.exp(-s * t) * (np.cos(w * t) + s / w * np.sin(w * t)) / c
-        np.testing.assert_allclose(solution.position[:, 0, 0], free - np.cos(t) / c, atol=1e-9)
-        assert abs(solution.ledger.residual[-1]) < 1e-10
+        agree(solution.position[:, 0, 0], free - np.cos(t) / c, atol=1e-9)
+        agree(solution.ledger.residual[-1], 0.0, atol=1e-10)
 
 
 def test_a_constant_force_and_its_opposite_on_the_parent():
@@ -71,6 +74,7 @@ def test_a_constant_force_and_its_opposite_on_the_parent():
     assert solution.ledger.loads[-1] == pytest.approx(0.5 * 36 + 1.5 * 4, rel=1e-12)
 
 
+@verifies("forces.CurveSpring", r"energy $\tfrac34 (l - 1)^4 + \tfrac12 (l - 1)^2$", "closed form")
 def test_a_spring_with_a_curve():
     # tension 3 (l - 1)^3 + (l - 1): a spline of degree 3 has it exactly, and its energy
     scene = carom.Scene(gravity=(0, 0, 0))
@@ -86,8 +90,8 @@ def test_a_spring_with_a_curve():
 
     x = solution.position[:, 0, 0]
     gained = solution.potential_energy - solution.potential_energy[0]
-    np.testing.assert_allclose(gained, energy(x) - energy(1.7), atol=1e-12)
-    assert np.max(np.abs(solution.total_energy - solution.total_energy[0])) < 1e-8
+    agree(gained, energy(x) - energy(1.7), atol=1e-12)
+    agree(solution.total_energy, solution.total_energy[0], atol=1e-8)
 
 
 def test_points_of_a_curve_are_joined_monotonously():
@@ -111,6 +115,7 @@ def potential(t, states):
     return -1.0 / np.sqrt(d @ d)
 
 
+@verifies("forces.UserForce", r"attraction $1/r^2$: a circle with $\omega^2 = 2$", "closed form")
 @pytest.mark.parametrize("compiled", [False, True])
 def test_a_force_of_the_user_between_two_bodies(compiled):
     # a circle about the common centre: r = 1, w^2 = 2 (masses 1, attraction 1/r^2)
@@ -129,12 +134,12 @@ def test_a_force_of_the_user_between_two_bodies(compiled):
     solution = carom.simulate(scene, 2.0, step=0.01)
     turn = w * solution.t
     expected = 0.5 * np.stack([np.cos(turn), np.sin(turn)], axis=1)
-    np.testing.assert_allclose(solution.position[:, 1, :2], expected, atol=1e-8)
-    assert np.max(np.abs(solution.velocity.sum(axis=1))) < 1e-14
+    agree(solution.position[:, 1, :2], expected, atol=1e-8)
+    agree(solution.velocity.sum(axis=1), 0.0, atol=1e-14)
     if energy is not None:
-        np.testing.assert_allclose(solution.potential_energy, -1.0, atol=1e-8)
+        agree(solution.potential_energy, -1.0, atol=1e-8)
         assert np.all(solution.ledger.loads == 0.0)
-    assert abs(solution.ledger.residual[-1]) < 1e-8
+    agree(solution.ledger.residual[-1], 0.0, atol=1e-8)
 
 
 def test_the_user_sees_the_axes_of_the_scene():
@@ -309,6 +314,7 @@ def axles(spins=(1.0, 0.0)):
     return scene
 
 
+@verifies("forces.JointSpring", r"$\ddot s = -(k s + c\dot s)(1/I_a + 4/I_b)$", "closed form")
 @pytest.mark.parametrize(
     "how", [{"rtol": 1e-10}, {"method": "implicit", "step": 1e-3}, {"step": 1e-3, "method": "rk4"}]
 )
@@ -321,12 +327,10 @@ def test_a_spring_along_a_sum(how):
     damping, f = 0.5 * c * ease, np.sqrt(k * ease - (0.5 * c * ease) ** 2)
     known = np.exp(-damping * s.t) * np.sin(f * s.t) / f
     error = 1e-9 if "rtol" in how else 1e-5
-    np.testing.assert_allclose(s["shaft"].coordinate, known, atol=error)
-    np.testing.assert_allclose(s["a"].coordinate - 2 * s["b"].coordinate, known, atol=error)
-    np.testing.assert_allclose(2 * 0.2 * s["a"].rate + 0.5 * s["b"].rate, 0.4, atol=1e-12)
-    np.testing.assert_allclose(
-        s["shaft"].torque, -k * known - c * s["shaft"].rate, atol=1e3 * error
-    )
+    agree(s["shaft"].coordinate, known, atol=error)
+    agree(s["a"].coordinate - 2 * s["b"].coordinate, known, atol=error)
+    agree(2 * 0.2 * s["a"].rate + 0.5 * s["b"].rate, 0.4, atol=1e-12)
+    agree(s["shaft"].torque, -k * known - c * s["shaft"].rate, atol=1e3 * error)
 
 
 def test_a_servo_along_a_sum():
@@ -343,6 +347,7 @@ def test_a_servo_along_a_sum():
     )
 
 
+@verifies("forces.Actuator", "a constant torque along a sum of coordinates", "closed form")
 def test_a_control_along_a_sum():
     """A run sets it; the model-free actuator is listed with its length, the sum times its gear."""
     scene = axles((0.0, 0.0))
@@ -351,6 +356,6 @@ def test_a_control_along_a_sum():
     run.ctrl["motor"] = 0.1
     run.advance(1.0)
     state = run.state
-    assert state["motor"].torque == pytest.approx(0.2)
-    assert state["a"].rate == pytest.approx(0.2 / 0.2, abs=1e-12)
-    assert state["b"].rate == pytest.approx(0.6 / 0.5, abs=1e-12)
+    agree(state["motor"].torque, 0.2, rtol=1e-6)
+    agree(state["a"].rate, 0.2 / 0.2, atol=1e-12)
+    agree(state["b"].rate, 0.6 / 0.5, atol=1e-12)

@@ -6,6 +6,7 @@ import pytest
 import carom
 from carom import GROUND, constraints, forces, joints
 from carom.geometry import quaternion
+from verified import agree, verifies
 
 KINDS = {  # of joints, with the coordinates that have inertia
     "Revolute": (lambda at: joints.Revolute(at, (0.3, 1.0, -0.2)), (0,)),
@@ -68,6 +69,7 @@ def test_a_turn_under_a_torque():
     assert np.max(np.abs(solution.joint_reactions)) < 1e-13
 
 
+@verifies("forces.JointInertia", "$a = g m/(m + I)$", "closed form")
 @pytest.mark.plain
 def test_a_slide_falls_slowly():
     """a = g m/(m + I)."""
@@ -76,9 +78,10 @@ def test_a_slide_falls_slowly():
     rail = scene.add_joint(joints.Prismatic((0, 0, 1)), GROUND, block)
     scene.add_force(forces.JointInertia(rail, 3.0))
     solution = carom.simulate(scene, 0.5, step=0.1)
-    np.testing.assert_allclose(solution.velocity[:, 0, 2], -4.0 * solution.t, atol=1e-13)
+    agree(solution.velocity[:, 0, 2], -4.0 * solution.t, atol=1e-13)
 
 
+@verifies("forces.JointInertia", r"$p = (1 + e)\,u/(1/m + l^2/(J + I))$", "closed form")
 @pytest.mark.parametrize("e", [0.3, 0.7, 1.0])
 def test_a_ball_strikes_a_lever(e):
     """p = (1 + e) u/(1/m + l^2/(J + I)) at the arm l."""
@@ -95,8 +98,8 @@ def test_a_ball_strikes_a_lever(e):
     solution = carom.simulate(scene, 0.2, step=0.01)
     arm, J = 1.6, 1.5 + 3.0 + 4.0
     p = (1.0 + e) * 2.0 / (1.0 / 2.0 + arm**2 / J)
-    assert solution.velocity[-1, 1, 1] == pytest.approx(-2.0 + p / 2.0, abs=1e-9)
-    assert solution.angular_velocity[-1, 0, 2] == pytest.approx(-arm * p / J, abs=1e-9)
+    agree(solution.velocity[-1, 1, 1], -2.0 + p / 2.0, atol=1e-9)
+    agree(solution.angular_velocity[-1, 0, 2], -arm * p / J, atol=1e-9)
 
 
 @pytest.mark.few(7)

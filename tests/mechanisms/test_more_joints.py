@@ -14,6 +14,7 @@ from test_forests import wrench_on_centre
 import carom
 from carom import GROUND, Scene, joints
 from carom.model.arrays import FOREST, LOOPS
+from verified import agree, verifies
 
 BOTH = pytest.mark.parametrize("looped", [False, True], ids=["tree", "loop"])
 UP = (0, 0, 1)
@@ -51,6 +52,7 @@ def sleeve(definition, spin, speed):
     return scene
 
 
+@verifies("joints.Cylindrical", r"$z = v t - g t^2/2$, $q = \omega t$", "closed form")
 @BOTH
 def test_cylindrical_joint_falls_freely_and_turns_uniformly(looped):
     """The line takes all but the force along it and the torque about it: z = v t - g t^2/2, q = w t."""
@@ -59,11 +61,12 @@ def test_cylindrical_joint_falls_freely_and_turns_uniformly(looped):
     q, rate = s.joint_coordinates("joint")
     exact = np.stack([9.0 * s.t, 2.0 * s.t - 0.5 * G * s.t**2], axis=1)
     # RK4 in the ambient space, turns of 0.09 rad: (w h)^4/120 of the velocity, 1e-6 over 9 rad
-    np.testing.assert_allclose(q, exact, rtol=0, atol=1e-6)
-    np.testing.assert_allclose(q[:, 1], exact[:, 1], rtol=0, atol=1e-12)
-    np.testing.assert_allclose(rate[:, 1], 2.0 - G * s.t, rtol=0, atol=1e-12)
+    agree(q, exact, atol=1e-6)
+    agree(q[:, 1], exact[:, 1], atol=1e-12)
+    agree(rate[:, 1], 2.0 - G * s.t, atol=1e-12)
 
 
+@verifies("joints.Planar", r"$a = g \sin\alpha$ down the slope, uniform across it", "closed form")
 @BOTH
 @pytest.mark.plain
 def test_plate_on_an_incline(looped):
@@ -79,15 +82,16 @@ def test_plate_on_an_incline(looped):
     s = either(looped, scene, 0.5, 0.01)
     way = 0.5 * s.t + 0.5 * G * np.sin(slope) * s.t**2
     exact = way[:, None] * down + 1.5 * s.t[:, None] * np.array([0, 1, 0])
-    np.testing.assert_allclose(s.position[:, 0], exact, rtol=0, atol=1e-13)
+    agree(s.position[:, 0], exact, atol=1e-13)
     # t1 is y, t2 = normal x y points up the slope
     q, rate = s.joint_coordinates("table")
-    np.testing.assert_allclose(q, np.stack([1.5 * s.t, -way, 2.0 * s.t], 1), rtol=0, atol=1e-9)
-    np.testing.assert_allclose(rate[-1, :2], [1.5, -0.5 - 0.5 * G * np.sin(slope)], atol=1e-12)
+    agree(q, np.stack([1.5 * s.t, -way, 2.0 * s.t], 1), atol=1e-9)
+    agree(rate[-1, :2], [1.5, -0.5 - 0.5 * G * np.sin(slope)], atol=1e-12)
     table = s.joint_reactions[0, 0, :3]  # what is left of the weight
-    np.testing.assert_allclose(table, 2.0 * G * np.cos(slope) * np.array(normal), atol=1e-12)
+    agree(table, 2.0 * G * np.cos(slope) * np.array(normal), atol=1e-12)
 
 
+@verifies("joints.Screw", r"$z = -a t^2/2$, $a = g m k^2/(m k^2 + J)$, $k = p/2\pi$", "closed form")
 @BOTH
 def test_screw_over_many_turns_has_order_four(looped):
     """(m k^2 + J) q'' = -m g k with k = pitch/(2 pi): z = -a t^2/2, a = g m k^2/(m k^2 + J).
@@ -105,13 +109,14 @@ def test_screw_over_many_turns_has_order_four(looped):
         slide = -0.5 * a * s.t**2
         errors.append(np.max(np.abs(q[:, 0] - slide / k)))
         # the row of the screw, which each step brings back to round-off of the turn times k
-        np.testing.assert_allclose(q[:, 1], k * q[:, 0], rtol=0, atol=1e-13)
+        agree(q[:, 1], k * q[:, 0], atol=1e-13)
     assert q[-1, 0] > 2.0 * np.pi * 10  # by the left-hand thread
-    np.testing.assert_allclose(rate[-1], [-a / k, -a], rtol=1e-9)
+    agree(rate[-1], [-a / k, -a], rtol=1e-9)
     np.testing.assert_allclose(orders(errors), 4.0, rtol=0, atol=0.2)
-    assert errors[-1] < 1e-6
+    agree(errors[-1], 0.0, atol=1e-6)
 
 
+@verifies("joints.PointOnLine", r"$r = r_0 \cosh\omega t$", "closed form")
 @BOTH
 def test_bead_on_a_rotating_wire_has_order_four(looped):
     """r'' = w^2 r on a straight wire that turns at w: r = r0 cosh(w t). Its inertia keeps w to 1e-12."""
@@ -132,9 +137,12 @@ def test_bead_on_a_rotating_wire_has_order_four(looped):
             max(np.max(np.abs(q[:, 0] + 0.5 - exact[0])), np.max(np.abs(rate[:, 0] - exact[1])))
         )
     np.testing.assert_allclose(orders(errors), 4.0, rtol=0, atol=0.15)
-    assert errors[-1] < 1e-7
+    agree(errors[-1], 0.0, atol=1e-7)
 
 
+@verifies(
+    "joints.PointOnPlane", r"$(m l^2 \sin^2 q + J)\,\dot q^2/2 = E - m g l \cos q$", "closed form"
+)
 @BOTH
 def test_rod_whose_tip_slides_on_a_plane(looped):
     """Upright rod that tips over, its tip on a smooth table: the centre falls straight down, and
@@ -157,7 +165,7 @@ def test_rod_whose_tip_slides_on_a_plane(looped):
     )  # fmt: skip
     scene.add_joint(joints.PointOnPlane(tip, UP), GROUND, rod, name="tip")
     s = either(looped, scene, 0.5, 0.0025)
-    np.testing.assert_allclose(s.position[:, 0, :2], centre[:2] + 0 * s.t[:, None], atol=1e-13)
+    agree(s.position[:, 0, :2], centre[:2] + 0 * s.t[:, None], atol=1e-13)
     cos = s.position[:, 0, 2] / l
     assert cos[-1] < 0.3  # it has gone far
 
@@ -167,19 +175,19 @@ def test_rod_whose_tip_slides_on_a_plane(looped):
     energy = 0.5 * inertia(np.cos(lean)) * spin**2 + G * l * np.cos(lean)
     fast = np.sqrt(2.0 * (energy - G * l * cos) / inertia(cos))
     # up to 8 rad/s: (q' h)^4 = 2e-7
-    np.testing.assert_allclose(s.angular_velocity[:, 0] @ axis, fast, rtol=0, atol=1e-7)
+    agree(s.angular_velocity[:, 0] @ axis, fast, atol=1e-7)
 
     # the time to get there, by quadrature
     def falls(a):
         return np.sqrt(inertia(np.cos(a)) / (2.0 * (energy - G * l * np.cos(a))))
 
     time = quad(falls, lean, np.arccos(cos[-1]), epsabs=1e-13)[0]
-    assert time == pytest.approx(0.5, abs=1e-8)
+    agree(time, 0.5, atol=1e-8)
     # the tip slides against the fall
     q, rate = s.joint_coordinates("tip")
     slide = -l * (np.sqrt(1.0 - cos**2) - np.sin(lean))
-    np.testing.assert_allclose(q, slide[:, None] * along[:2], rtol=0, atol=1e-12)
-    np.testing.assert_allclose(rate[-1], -l * fast[-1] * cos[-1] * along[:2], rtol=0, atol=1e-7)
+    agree(q, slide[:, None] * along[:2], atol=1e-12)
+    agree(rate[-1], -l * fast[-1] * cos[-1] * along[:2], atol=1e-7)
 
 
 def shafts(bend):
@@ -201,6 +209,7 @@ def shafts(bend):
     return scene
 
 
+@verifies("joints.Universal", r"$\tan q_2 = \tan q_1 \cos\beta$; time by quadrature", "closed form")
 def test_cardan_shaft_has_order_four():
     """tan(q2) = tan(q1) cos(bend), the energy of both shafts, and with it q1 over time.
 
@@ -217,18 +226,18 @@ def test_cardan_shaft_has_order_four():
         s = carom.simulate(shafts(bend), 3.0, step=step)
         a, b = (s.joint_coordinates(k)[0][:, 0] for k in ("in", "out"))
         wrong = np.sin(b) * np.cos(a) - np.cos(b) * np.sin(a) * np.cos(bend)
-        assert np.max(np.abs(wrong)) < 1e-13
-        assert abs(b[-1] - a[-1]) < 0.2  # both counted all turns
+        agree(wrong, 0.0, atol=1e-13)
+        agree(b[-1], a[-1], atol=0.2)  # both counted all turns
         assert max(np.max(e) for e in s.constraint_errors) < 1e-13
         time = quad(lambda x: np.sqrt(inertia(x) / start), 0.0, a[-1], epsabs=1e-13, limit=200)[0]
         errors.append(abs(time - 3.0))
     assert a[-1] > 2.0 * np.pi
     np.testing.assert_allclose(orders(errors), 4.0, rtol=0, atol=0.2)
-    assert errors[-1] < 1e-8
+    agree(errors[-1], 0.0, atol=1e-8)
     # the pins of the cross, as the second shaft goes round a cone in the axes of the first
     q, _ = s.joint_coordinates("cross")
     exact = [np.arctan(np.tan(bend) * np.cos(a)) - bend, np.arcsin(np.sin(bend) * np.sin(a))]
-    np.testing.assert_allclose(q.T, exact, rtol=0, atol=1e-12)
+    agree(q.T, exact, atol=1e-12)
 
 
 def forest(seed, **more):

@@ -7,6 +7,7 @@ from multipliers import applied_force
 
 import carom
 from carom import Scene, forces
+from verified import agree, verifies
 
 
 def mounted(**given):
@@ -53,6 +54,7 @@ def test_dampers_take_what_the_ledger_says():
     assert np.linalg.norm(relative) < 0.4 * np.linalg.norm([0.7, 1.8, -1.4])
 
 
+@verifies("forces.Bushing", r"$\sqrt{k/m}$ along, $\sqrt{k_t/J}$ about its axis", "closed form")
 @pytest.mark.plain
 def test_frequencies_along_and_about_the_axis():
     """From rest displaced along z by a: a cos(sqrt(k/m) t); turned about z by b: b cos(sqrt(k_t/J) t)."""
@@ -63,11 +65,9 @@ def test_frequencies_along_and_about_the_axis():
     scene.add_force(forces.Bushing((50.0, 80.0), (8.0, 3.0)), body)
     s = carom.simulate(scene, 0.5, step=5e-3)
     w, v = np.sqrt(50 / 2.0), np.sqrt(8 / 0.5)
-    np.testing.assert_allclose(s.position[:, 0, 2], 0.3 / w * np.sin(w * s.t), atol=1e-8)
-    np.testing.assert_allclose(
-        2 * np.arctan2(s.orientation[:, 0, 3], s.orientation[:, 0, 0]), 0.7 / v * np.sin(v * s.t),
-        atol=1e-8,
-    )  # fmt: skip
+    agree(s.position[:, 0, 2], 0.3 / w * np.sin(w * s.t), atol=1e-8)
+    turned = 2 * np.arctan2(s.orientation[:, 0, 3], s.orientation[:, 0, 0])
+    agree(turned, 0.7 / v * np.sin(v * s.t), atol=1e-8)
 
 
 def test_wrenches_are_the_slope_of_the_energy():
@@ -83,6 +83,11 @@ def test_wrenches_are_the_slope_of_the_energy():
     np.testing.assert_allclose(power[2:-2], -slope[2:-2], atol=5e-4 * np.max(np.abs(slope)))
 
 
+@verifies(
+    "forces.Force",
+    r"turns with its body: $v = \frac{F}{m\omega}(\sin\omega t, 1 - \cos\omega t)$",
+    "closed form",
+)
 def test_a_thruster_turns_with_its_body():
     """A force F that turns with a body at w: v = F/(m w) (sin wt, 1 - cos wt)."""
     scene = Scene(gravity=(0, 0, 0))
@@ -90,8 +95,8 @@ def test_a_thruster_turns_with_its_body():
     scene.add_force(forces.Force((4.0, 0, 0), follow=True), body)
     s = carom.simulate(scene, 1.0, step=0.01)
     exact = 4.0 / 2.0 / 3.0 * np.stack([np.sin(3 * s.t), 1 - np.cos(3 * s.t), 0 * s.t], axis=1)
-    np.testing.assert_allclose(s.velocity[:, 0], exact, atol=1e-8)
-    np.testing.assert_allclose(s.ledger.residual, 0.0, atol=1e-7)
+    agree(s.velocity[:, 0], exact, atol=1e-8)
+    agree(s.ledger.residual, 0.0, atol=1e-7)
 
 
 def test_a_torque_that_follows_keeps_angular_momentum():

@@ -12,6 +12,7 @@ import carom
 from campaigns import rails
 from campaigns.case import as_row, run, wrong
 from carom.dynamics.methods import METHODS
+from verified import agree, verifies
 
 G = 9.81
 CYCLOID = 0.5  # generating radius [m]
@@ -45,6 +46,10 @@ def on_wire(curve, s=0.0, speed=0.0, gravity=(0, 0, -G)):
     return scene, joint
 
 
+@verifies(
+    "joints.PointOnCurve", r"a cycloid: $s = A \cos\sqrt{g/4a}\,t$ for each $A$", "closed form"
+)
+@verifies("curves.Curve", r"a cycloid: $s = A \cos\sqrt{g/4a}\,t$ for each $A$", "closed form")
 @pytest.mark.parametrize("amplitude", [0.1, 0.5, 0.9, 0.99])
 def test_cycloid_has_one_period(amplitude):
     """The arc length from the lowest point is 4 a sin(u/2), and harmonic: w^2 = g/(4 a)."""
@@ -53,20 +58,25 @@ def test_cycloid_has_one_period(amplitude):
     w = math.sqrt(G / (4 * CYCLOID))
     s = carom.simulate(scene, 4 * math.pi / w, **FINE)
     # near a cusp the curvature is 1/(4 a (1 - A^2)^1/2), and so are errors of the table of the curve
-    np.testing.assert_allclose(s["wire"].coordinate, whole * (np.cos(w * s.t) - 1.0), atol=1e-9)
+    agree(s["wire"].coordinate, whole * (np.cos(w * s.t) - 1.0), atol=1e-9)
 
 
+@verifies(
+    "joints.PointOnCurve",
+    "a circle: the pendulum's elliptic functions, and its reaction",
+    "closed form",
+)
 def test_circle_is_a_pendulum():
     start, k = 2.5, math.sin(1.25)
     scene, joint = on_wire(ring(circle), start)
     s = carom.simulate(scene, 3.0, **FINE)
     angle = 2.0 * np.arcsin(k * ellipj(ellipk(k * k) - math.sqrt(G) * s.t, k * k)[0])
-    np.testing.assert_allclose(s.joint_coordinates(joint)[0][:, 0], angle - start, atol=1e-9)
-    assert np.ptp(s.total_energy) < 1e-8
+    agree(s.joint_coordinates(joint)[0][:, 0], angle - start, atol=1e-9)
+    agree(np.ptp(s.total_energy), 0.0, atol=1e-8)
     # the wire bears m (v^2/r + g cos) towards the centre, and turns nothing
     x, v = s.position[:, 0], s.velocity[:, 0]
     force = -2.0 * x * (np.sum(v**2, axis=1) - G * x[:, 2])[:, None]
-    np.testing.assert_allclose(s["wire"].force, force, atol=1e-7)
+    agree(s["wire"].force, force, rtol=1e-7, atol=1e-7)
     assert np.all(s["wire"].torque == 0.0)
 
 
@@ -92,6 +102,7 @@ def test_method_has_its_order(method):
     assert orders(errors)[0] > order - 0.5 or errors[1] < 5e-9, errors
 
 
+@verifies("curves.Spline", r"$\ddot s = g \sin\alpha \mp F/m$ with blows at a stop", "closed form")
 def test_friction_and_a_stop_on_a_straight_spline():
     line = carom.curves.Spline([(0, 0, 0), (1, 0, -0.5), (3, 0, -1.5), (4, 0, -2)])
     scene, joint = on_wire(line)
@@ -103,13 +114,11 @@ def test_friction_and_a_stop_on_a_straight_spline():
     first = math.sqrt(2 * 2.0 / down)
     speed = 0.5 * down * first
     second = first + speed / up + math.sqrt(2 * (0.5 * speed**2 / up) / down)
-    np.testing.assert_allclose(s.impacts.time[:2], (first, second), atol=1e-8)
+    agree(s.impacts.time[:2], (first, second), atol=1e-8)
     before = s.t < first
-    np.testing.assert_allclose(
-        s["wire"].coordinate[before], 0.5 * down * s.t[before] ** 2, atol=1e-8
-    )
+    agree(s["wire"].coordinate[before], 0.5 * down * s.t[before] ** 2, atol=1e-8)
     balance = s.total_energy - s.total_energy[0] - s.ledger.friction - s.ledger.impacts
-    np.testing.assert_allclose(balance, 0.0, atol=1e-7)
+    agree(balance, 0.0, atol=1e-7)
 
 
 def test_motor_drives_laps_and_branches_are_kept_where_the_curve_crosses_itself():
@@ -125,6 +134,11 @@ def test_motor_drives_laps_and_branches_are_kept_where_the_curve_crosses_itself(
     assert run.state.joint_coordinates("wire")[0][0] == pytest.approx(20.0, abs=1e-9)
 
 
+@verifies(
+    "joints.CurveOnPoint",
+    "a circular slot is a rod to its centre",
+    "invariant: two joints with one motion",
+)
 def test_slot_about_a_point_is_a_rod():
     """A circular slot keeps its centre at a distance from the pin."""
     centre, found = np.array([0.3, 0.0, 0.2]), []
@@ -139,7 +153,7 @@ def test_slot_about_a_point_is_a_rod():
         s = carom.simulate(scene, 2.0, save_at=np.linspace(0, 2, 21), **FINE)
         found.append((s.position, s.joint_reactions))
     for slot, rod in zip(*found):
-        np.testing.assert_allclose(slot, rod, atol=2e-6)
+        agree(slot, rod, atol=2e-6)
 
 
 def test_two_bodies_in_frames_and_as_the_scene_places_them():

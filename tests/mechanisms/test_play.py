@@ -7,6 +7,7 @@ from scipy.optimize import brentq
 import carom
 from carom import GROUND, constraints, forces, joints
 from files.compare import goes_on
+from verified import agree, verifies
 
 INERTIA = np.array([0.02, 0.05, 0.03])
 SOON = carom.Options(max_impacts_per_step=1)
@@ -33,6 +34,7 @@ def turns(solution, times=None):
     return np.column_stack([solution[f"axle {k}"].coordinate for k in range(count)])
 
 
+@verifies("add_play", r"impulse $(1 + e)\,\lvert\dot s\rvert/\sum a_k^2/I_k$", "closed form")
 @pytest.mark.parametrize("factors", [(1.0, 2.0), (1.0, -0.5), (1.0, 1.0, -2.0)])
 @pytest.mark.parametrize("e", [0.0, 0.5, 1.0])
 @pytest.mark.parametrize("how", [{}, {"step": 1e-2}, {"rtol": 1e-10}])
@@ -46,15 +48,13 @@ def test_teeth_strike(factors, e, how):
     s = carom.simulate(wheels(rates, factors, -0.01, 0.02, restitution=e), 0.02, **how)
     speed, W = a @ rates, np.sum(a * a / inertia)
     first = s.impacts[0]
-    np.testing.assert_allclose(first.time, 0.02 / speed, atol=1e-11)
-    np.testing.assert_allclose(first.impulse[0], (1.0 + e) * speed / W, rtol=1e-12)
+    agree(first.time, 0.02 / speed, atol=1e-11)
+    agree(first.impulse[0], (1.0 + e) * speed / W, rtol=1e-12)
     assert first.unit == "rad/s"
     after = rates - a * (1.0 + e) * speed / W / inertia
     next_one = np.searchsorted(s.t, first.time + 1e-9)
-    np.testing.assert_allclose(s.angular_velocity[next_one, :, 2], after, rtol=1e-12)
-    np.testing.assert_allclose(
-        s.ledger.impacts[next_one], -0.5 * (1 - e * e) * speed**2 / W, atol=1e-13
-    )
+    agree(s.angular_velocity[next_one, :, 2], after, rtol=1e-12)
+    agree(s.ledger.impacts[next_one], -0.5 * (1 - e * e) * speed**2 / W, atol=1e-13)
 
 
 @pytest.mark.parametrize("factors", [(1.0, 2.0), (1.0, 1.0, -2.0)])
@@ -143,6 +143,9 @@ def rattle(end, e, width, amplitude, w):
         times.append(t)
 
 
+@verifies(
+    "add_play", r"$u^+ = -e\,u^-$ between teeth that swing", "own integration: flights and roots"
+)
 def test_a_driven_gear_rattles():
     """Against an integration of its own: flight between teeth that swing, u+ = -e u- relative to them."""
     e, width, amplitude, w = 0.6, 0.05, 0.3, 2.0 * np.pi
@@ -157,7 +160,7 @@ def test_a_driven_gear_rattles():
     expected = rattle(4.0, e, width, amplitude, w)
     strong = s.impacts.time[:12]
     assert len(expected) >= 12
-    np.testing.assert_allclose(strong, expected[:12], atol=1e-8)
+    agree(strong, expected[:12], atol=1e-8)
 
 
 @pytest.mark.parametrize("how", [{}, {"step": 5e-3}])
@@ -244,6 +247,7 @@ def test_whole_steps(count):
     )
 
 
+@verifies("add_play(coordinate=)", "$W = r^2/I + 1/m$", "closed form")
 def test_rack_and_pinion():
     """An angle times its radius and a displacement: in metres and newtons."""
     scene = carom.Scene(gravity=(0, 0, 0))
@@ -256,8 +260,8 @@ def test_rack_and_pinion():
     play = scene.add_play({turn: 0.1, (slide, 0): 1.0}, -0.01, 0.01, restitution=0.25)
     s = carom.simulate(scene, 0.1)
     W = 0.1**2 / 0.02 + 1 / 2.0
-    np.testing.assert_allclose(s.impacts.time[0], 0.02, atol=1e-11)
-    np.testing.assert_allclose(s.impacts.impulse[0, 0], 1.25 * 0.5 / W, rtol=1e-12)
+    agree(s.impacts.time[0], 0.02, atol=1e-11)
+    agree(s.impacts.impulse[0, 0], 1.25 * 0.5 / W, rtol=1e-12)
     assert s.impacts[0].unit == "m/s"
     assert not play.upper.turns
 

@@ -2,12 +2,12 @@
 
 import math
 
-import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 
 import carom
 from carom import GROUND, forces, joints
+from verified import agree, verifies
 
 TOLERANCES = 1e-6, 1e-10
 I = 0.2
@@ -20,6 +20,11 @@ def wheel(spin=0.0, gravity=(0, 0, 0)):
     return scene
 
 
+@verifies(
+    "forces.PositionServo",
+    r"$q = q_0 (1 - e^{-dt}(\cos\omega t + \tfrac d\omega \sin\omega t))$",
+    "closed form",
+)
 @pytest.mark.parametrize("rtol", TOLERANCES)
 def test_a_servo_swings_as_a_damped_spring(rtol):
     # q = target (1 - exp(-d t)(cos w t + d/w sin w t)), d = kd/2I, w^2 = kp/I - d^2
@@ -30,8 +35,8 @@ def test_a_servo_swings_as_a_damped_spring(rtol):
     d = kd / (2 * I)
     w = math.sqrt(kp / I - d * d)
     q = target * (1 - math.exp(-d * t) * (math.cos(w * t) + d / w * math.sin(w * t)))
-    assert run["axle"].coordinate[-1] == pytest.approx(q, abs=30 * rtol)
-    assert np.abs(run.ledger.residual).max() < 30 * rtol
+    agree(run["axle"].coordinate[-1], q, atol=30 * rtol)
+    agree(run.ledger.residual, 0.0, atol=30 * rtol)
 
 
 def own(law, t, start=(0.0, 0.0), events=()):
@@ -48,6 +53,7 @@ def own(law, t, start=(0.0, 0.0), events=()):
     return run.y[:, -1]
 
 
+@verifies("forces.PositionServo", "limit and line of torque over speed", "own integration: SciPy")
 @pytest.mark.parametrize("rtol", TOLERANCES)
 def test_a_limit_and_a_line_of_torque_over_speed(rtol):
     kp, kd, target, limit, idle, t = 40.0, 2.0, 2.0, 1.5, 6.0, 1.5
@@ -64,13 +70,16 @@ def test_a_limit_and_a_line_of_torque_over_speed(rtol):
 
     q, v = own(law, t, (0.0, -1.0))
     # two kinks, at which the method is of order 1 to 2 within the tolerance; measured 2e-8, 5e-12
-    assert run["axle"].coordinate[-1] == pytest.approx(q, abs=10 * rtol + 1e-9)
-    assert run["axle"].rate[-1] == pytest.approx(v, abs=30 * rtol + 1e-9)
+    agree(run["axle"].coordinate[-1], q, atol=10 * rtol + 1e-9)
+    agree(run["axle"].rate[-1], v, atol=30 * rtol + 1e-9)
     torque, rate = run["servo"].torque, run["axle"].rate
-    assert torque[1] == pytest.approx(limit * (1 - rate[1] / idle), rel=1e-12)
-    assert np.abs(run.ledger.residual).max() < 100 * rtol
+    agree(torque[1], limit * (1 - rate[1] / idle), rtol=1e-12)
+    agree(run.ledger.residual, 0.0, atol=100 * rtol)
 
 
+@verifies(
+    "forces.VelocityServo", r"$I\dot v$ = limit, then $v_0 - v \propto e^{-k t/I}$", "closed form"
+)
 @pytest.mark.parametrize("rtol", TOLERANCES)
 def test_a_velocity_servo_at_its_limit(rtol):
     # I v' = limit up to v = target - limit/kv, then target - v falls by exp(-kv t/I)
@@ -80,7 +89,7 @@ def test_a_velocity_servo_at_its_limit(rtol):
     run = carom.simulate(scene, t, rtol=rtol)
     until = I * (target - limit / kv) / limit
     v = target - limit / kv * math.exp(-kv * (t - until) / I)
-    assert run["axle"].rate[-1] == pytest.approx(v, abs=30 * rtol)
+    agree(run["axle"].rate[-1], v, atol=30 * rtol)
 
 
 def test_a_servo_is_an_actuator_of_its_numbers():

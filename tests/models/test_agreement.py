@@ -5,6 +5,7 @@ import numpy as np
 import pytest
 
 import carom
+from verified import agree, verifies
 
 from .agreement import (
     DATA,
@@ -31,6 +32,7 @@ def test_there_are_models_enough():
     assert len(NAMES) >= 16
 
 
+@verifies("load_model", "places and velocities of the bodies of models", "other program: MuJoCo")
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("seed", [0, *(pytest.param(k, marks=pytest.mark.slow) for k in (1, 2))])
 def test_masses_weights_and_places(name, seed):
@@ -43,17 +45,17 @@ def test_masses_weights_and_places(name, seed):
     assert relative(M, full_mass(m, d)) < 1e-10
     rest = mujoco_data(m, q, np.zeros(m.nv))
     gravity = rest.qfrc_bias - rest.qfrc_gravcomp
-    assert np.max(np.abs(weight + gravity)) <= 1e-10 * max(np.max(np.abs(gravity)), 1e-3)
+    agree(weight + gravity, 0.0, atol=1e-10 * max(np.max(np.abs(gravity)), 1e-3))
     for b in model.scene.bodies:
         if ":" in b.name:
             continue
         root = element(m, "body", b.name).id
         members = np.flatnonzero(m.body_weldid == root)
         centre = m.body_mass[members] @ d.xipos[members] / m.body_mass[members].sum()
-        np.testing.assert_allclose(b.position, centre, rtol=0, atol=1e-10)
-        np.testing.assert_allclose(b.orientation, d.xquat[root], rtol=0, atol=1e-10)
+        agree(b.position, centre, atol=1e-10)
+        agree(b.orientation, d.xquat[root], atol=1e-10)
         motion = np.append(b.velocity, b.angular_velocity)
-        np.testing.assert_allclose(motion, J[b.index] @ v, rtol=0, atol=1e-10)
+        agree(motion, J[b.index] @ v, atol=1e-10)
 
 
 # Of a tree to round-off; where links between stand in loops they are 1e-6 of the body's mass.
@@ -112,6 +114,7 @@ def test_loops_and_couplings_accelerate_as_the_model_with_its_constraints():
             np.testing.assert_allclose(found[b.index], J[b.index] @ qacc, rtol=0, atol=1e-9)
 
 
+@verifies("load_model", "motion of a model with all joints", "other program: MuJoCo")
 def test_motion_in_coordinates_of_the_model():
     """Two integrators of order 4: steps of 1 ms leave 1e-8 of them."""
     m = compiled(DATA / "own" / "joints.xml")
@@ -125,9 +128,9 @@ def test_motion_in_coordinates_of_the_model():
     for _ in range(400):
         mujoco.mj_step(m, d)
     found, expected = model.qpos(solution), d.qpos.copy()
-    np.testing.assert_allclose(found[0], q, rtol=0, atol=1e-12)
+    agree(found[0], q, atol=1e-12)
     for start in (ball, m.jnt_qposadr[m.body("flyer").jntadr[0]] + 3):  # q and -q are one
         found[-1, start : start + 4] *= np.sign(
             found[-1, start : start + 4] @ expected[start : start + 4]
         )
-    np.testing.assert_allclose(found[-1], expected, rtol=0, atol=1e-7)
+    agree(found[-1], expected, atol=1e-7)

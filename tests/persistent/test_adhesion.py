@@ -5,6 +5,7 @@ import pytest
 
 import carom
 from carom import forces
+from verified import agree, verifies
 
 G, M, SIZE = 9.81, 2.0, 0.1
 TOLERANCES = 1e-6, 1e-10
@@ -42,6 +43,7 @@ def test_too_little_lets_it_fall():
     np.testing.assert_allclose(run.position[-1, 0, 2], -SIZE - G * 0.5**2 / 2, rtol=1e-12)
 
 
+@verifies("add_contact(adhesion=)", "lets go where $m g + s t = A$", "closed form")
 @pytest.mark.parametrize("rtol", TOLERANCES)
 @pytest.mark.parametrize("shape", [None, BOX])
 def test_a_magnet_lets_go_at_its_force(shape, rtol):
@@ -53,13 +55,14 @@ def test_a_magnet_lets_go_at_its_force(shape, rtol):
     assert run.success
     events = run.events
     opened = events.time[events.kind == "opens"]
-    assert opened[0] == pytest.approx(free, abs=10 * rtol)
+    agree(opened[0], free, atol=10 * rtol)
     t = 1.5 - free
     fallen = A * t**2 / (2 * M) + slope * t**3 / (6 * M)
-    assert -SIZE - run.position[-1, 0, 2] == pytest.approx(fallen, abs=30 * rtol)
-    assert np.abs(run.ledger.residual).max() < 1e-4 * fallen * M * G
+    agree(-SIZE - run.position[-1, 0, 2], fallen, atol=30 * rtol)
+    agree(run.ledger.residual, 0.0, atol=1e-4 * fallen * M * G)
 
 
+@verifies("add_contact(adhesion=)", r"slows by $\mu (m g + A)/m$", "closed form")
 @pytest.mark.parametrize("rtol", TOLERANCES)
 def test_friction_has_the_adhesion_as_its_load(rtol):
     # a block on a floor: decelerates by mu (m g + A)/m
@@ -70,8 +73,8 @@ def test_friction_has_the_adhesion_as_its_load(rtol):
     scene.add_contact(block, floor, adhesion=A, friction=mu, restitution=0.0)
     run = carom.simulate(scene, 1.0, rtol=rtol)
     slows = mu * (M * G + A) / M
-    assert run.position[-1, 0, 0] == pytest.approx(v**2 / (2 * slows), abs=10 * rtol)
-    assert run.ledger.friction[-1] == pytest.approx(-0.5 * M * v**2, rel=1e-6)
+    agree(run.position[-1, 0, 0], v**2 / (2 * slows), atol=10 * rtol)
+    agree(run.ledger.friction[-1], -0.5 * M * v**2, rtol=1e-6)
 
 
 @pytest.mark.parametrize("share", [0.98, 1.02])
@@ -124,12 +127,13 @@ def test_adhesion_is_saved(tmp_path):
     np.testing.assert_array_equal(loaded.contact_force, run.contact_force)
 
 
+@verifies("ensemble", "$z = -g t^2/2$, or 0, by the adhesion of each run", "closed form")
 def test_adhesion_varies_in_ensembles():
     scene = hung(1.0)
     runs = carom.ensemble(
         scene, vary={"body-ceiling.adhesion": [0.9 * M * G, 1.1 * M * G]}, duration=0.3
     )
-    np.testing.assert_allclose(runs.position[:, 0, 2], [-SIZE - G * 0.3**2 / 2, -SIZE], rtol=1e-12)
+    agree(runs.position[:, 0, 2], [-SIZE - G * 0.3**2 / 2, -SIZE], rtol=1e-12)
 
 
 def test_a_box_peels_off_a_wall():

@@ -6,6 +6,7 @@ from scipy.integrate import solve_ivp
 
 import carom
 from carom.geometry import quaternion
+from verified import agree, verifies
 
 G = 9.81
 ANGLE = np.arctan(0.5)
@@ -33,25 +34,27 @@ def test_sticks_exactly(mu):
     assert s.contact_force[-1, 0, 0] == pytest.approx(1.3 * G * np.cos(ANGLE), rel=1e-12)
 
 
+@verifies("Box", r"block on a slope: $\dot v = g (\sin\alpha - \mu\cos\alpha)$", "closed form")
 @pytest.mark.parametrize("mu", [0.0, 0.2, 0.4999])
 def test_slides(mu):
     # v' = g (sin - mu cos), all constant: exact for any step.
     s, down = incline(ANGLE, mu, 2.0, 0.01)
     rate = G * (np.sin(ANGLE) - mu * np.cos(ANGLE))
-    np.testing.assert_allclose(s.velocity[-1, 0], 2.0 * rate * down, rtol=0, atol=1e-12)
+    agree(s.velocity[-1, 0], 2.0 * rate * down, atol=1e-12)
     way = (s.position[-1, 0] - s.position[0, 0]) @ down
-    assert way == pytest.approx(2.0 * rate, abs=1e-12)
-    assert np.max(np.abs(s.angular_velocity)) < 1e-12
+    agree(way, 2.0 * rate, atol=1e-12)
+    agree(s.angular_velocity, 0.0, atol=1e-12)
 
 
+@verifies("simulate(step=)", r"a block stops after $v_0^2/2\mu g$, for any step", "closed form")
 @pytest.mark.parametrize("step", [0.1, 0.01, 1e-3])
 def test_stops(step):
     # After v0^2/(2 mu g) at t = v0/(mu g), and stays.
     s, _ = incline(0.0, 0.3, 1.0, step, speed=1.0)
-    assert s.position[-1, 0, 0] == pytest.approx(1 / (0.6 * G), abs=1e-12)
-    assert s.events.time[s.events.kind == "sticks"] == pytest.approx(4 * [1 / (0.3 * G)], abs=1e-12)
+    agree(s.position[-1, 0, 0], 1 / (0.6 * G), atol=1e-12)
+    agree(s.events.time[s.events.kind == "sticks"], 4 * [1 / (0.3 * G)], atol=1e-12)
     assert np.all(s.velocity[-1] == 0.0)
-    assert s.ledger.friction[-1] == pytest.approx(-0.5 * 1.3, rel=1e-12)
+    agree(s.ledger.friction[-1], -0.5 * 1.3, rtol=1e-12)
 
 
 def test_thrown_up_an_incline_it_stops_and_stays():

@@ -6,6 +6,7 @@ from scipy.integrate import solve_ivp
 from scipy.special import ellipk
 
 import carom
+from verified import agree, verifies
 
 G, M = 9.81, 0.7
 BOWL, BALL = 0.5, 0.08
@@ -40,6 +41,11 @@ def run(scene, duration, tolerance, turn=None):
     return back(q, s.position[-1, 0]), back(q, s.velocity[-1, 0]), s
 
 
+@verifies(
+    "surfaces.InsideSphere",
+    r"period $4\sqrt{\kappa L/g}\,K(\sin^2\tfrac\theta2)$, $\kappa = 1$ or $\tfrac75$",
+    "closed form",
+)
 @pytest.mark.few(3)
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 @pytest.mark.parametrize(("friction", "angle"), [(0.0, 0.01), (0.0, 1.2), (1.0, 0.01), (1.0, 0.9)])
@@ -53,9 +59,9 @@ def test_ball_swings_in_a_bowl(friction, angle, tolerance):
     scene = on(S.InsideSphere(BOWL), start, friction, turn=TURN)
     x, v, s = run(scene, 2 * period, tolerance, TURN)
     bound = 30 * tolerance
-    assert np.abs(x - start).max() < bound * L
-    assert np.abs(v).max() < bound * np.sqrt(G * L)
-    assert np.abs(s.ledger.residual).max() < bound * M * G * L
+    agree(x, start, atol=bound * L)
+    agree(v, 0.0, atol=bound * np.sqrt(G * L))
+    agree(s.ledger.residual, 0.0, atol=bound * M * G * L)
 
 
 def slide_to_roll(speed, mu, duration):
@@ -94,6 +100,9 @@ def test_ball_slides_and_then_rolls(tolerance):
     assert abs(s.angular_velocity[-1, 0, 1] - w) < 100 * tolerance / BALL
 
 
+@verifies(
+    "surfaces.InsideCylinder", r"$\ddot z + \tfrac27 \Omega^2 z = -\tfrac57 g$", "closed form"
+)
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 def test_ball_does_not_fall_in_a_well(tolerance):
     # z'' + 2/7 W^2 z = -5/7 g with W the rate about the axis, which stays: it comes up again.
@@ -105,9 +114,10 @@ def test_ball_does_not_fall_in_a_well(tolerance):
     x, _v, _ = run(scene, duration, tolerance, TURN)
     z = -2.5 * G / rate**2 * (1.0 - np.cos(np.sqrt(2 / 7) * rate * duration))
     place = np.array([L * np.cos(rate * duration), L * np.sin(rate * duration), z])
-    assert np.abs(x - place).max() < 100 * tolerance * L
+    agree(x, place, atol=100 * tolerance * L)
 
 
+@verifies("surfaces.InsideCone", "steady circle by the balance of momentum", "closed form")
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 @pytest.mark.parametrize("friction", [0.0, 1.0])
 def test_ball_goes_round_in_a_funnel(friction, tolerance):
@@ -127,9 +137,10 @@ def test_ball_goes_round_in_a_funnel(friction, tolerance):
     )  # fmt: skip
     x, _v, _ = run(scene, 1.0, tolerance)
     place = np.array([d * np.cos(rate), d * np.sin(rate), start[2]])
-    assert np.abs(x - place).max() < 300 * tolerance * L
+    agree(x, place, atol=300 * tolerance * L)
 
 
+@verifies("surfaces.InsideTorus", r"$\tan p = \Omega^2 d/g$", "closed form")
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 def test_ball_goes_round_in_a_bent_tube(tolerance):
     # Without friction, on the outer side of the tube at the angle p from its bottom: tan p = W^2 d/g.
@@ -141,7 +152,7 @@ def test_ball_goes_round_in_a_bent_tube(tolerance):
     scene = on(S.InsideTorus(ring, tube), start, 0.0, velocity=(0, rate * d, 0), turn=TURN)
     x, _v, _ = run(scene, 1.0, tolerance, TURN)
     place = np.array([d * np.cos(rate), d * np.sin(rate), start[2]])
-    assert np.abs(x - place).max() < 100 * tolerance
+    agree(x, place, atol=100 * tolerance)
 
 
 @pytest.mark.parametrize("tolerance", TOLERANCES)
@@ -162,6 +173,7 @@ def test_cube_on_four_corners_is_a_pendulum(tolerance):
     assert np.abs(v).max() < 100 * tolerance
 
 
+@verifies("Capsule", "pendulum of the mass $m + I/r^2$", "closed form")
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 @pytest.mark.parametrize("friction", [0.0, 1.0])
 def test_capsule_rolls_in_a_pipe(friction, tolerance):
@@ -176,7 +188,7 @@ def test_capsule_rolls_in_a_pipe(friction, tolerance):
     body = scene.add_body(shape, mass=M, position=start, orientation=along)
     scene.add_contact(body, pipe, restitution=0.0, friction=friction)
     x, _v, _ = run(scene, period, tolerance)
-    assert np.abs(x - start).max() < 100 * tolerance * L
+    agree(x, start, atol=100 * tolerance * L)
 
 
 def fall_and_reflect(x, v, e, duration):
@@ -213,6 +225,7 @@ def test_ball_bounces_in_a_bowl(e):
         np.testing.assert_allclose(energy, energy[0], rtol=1e-12)
 
 
+@verifies("add_surface(surface_spin=)", "a ball in a drum that turns", "own integration: SciPy")
 @pytest.mark.parametrize("tolerance", TOLERANCES)
 def test_drum_that_turns_carries_a_ball_up(tolerance):
     # Its surface passes below the ball: this slides, then rolls in its place with the speed of the surface.
@@ -238,11 +251,11 @@ def test_drum_that_turns_carries_a_ball_up(tolerance):
     angle, u, w = solve_ivp(rates, (0, duration), (0.0, 0, 0), rtol=1e-12, atol=1e-14).y[:, -1]
     assert u - BALL * w + rate * BOWL > 0.2  # it still slides
     x, v, s = run(drum(0.0), duration, tolerance)
-    assert np.abs(x - L * np.array([np.sin(angle), 0, -np.cos(angle)])).max() < 100 * tolerance
-    assert abs(s.angular_velocity[-1, 0, 1] - w) < 100 * tolerance / BALL
-    assert abs(v[0] - u * np.cos(angle)) < 100 * tolerance
+    agree(x, L * np.array([np.sin(angle), 0, -np.cos(angle)]), atol=100 * tolerance)
+    agree(s.angular_velocity[-1, 0, 1], w, atol=100 * tolerance / BALL)
+    agree(v[0], u * np.cos(angle), atol=100 * tolerance)
     x, _, _ = run(drum(rate * BOWL / BALL), 1.0, tolerance)
-    assert np.abs(x - (0, 0, -L)).max() < 1e-14
+    agree(x, (0, 0, -L), atol=1e-14)
 
 
 def test_box_comes_to_rest_in_a_bowl():

@@ -9,6 +9,7 @@ import sympy as sp
 from scipy.integrate import solve_ivp
 
 import carom
+from verified import agree, verifies
 
 S = carom.surfaces
 G, R, RADIUS, START = 9.81, 0.5, 0.05, 0.2  # z = x^2 / (2 R)
@@ -54,14 +55,19 @@ def by_quadrature(times):
     return np.array([centre(u) for u in found.y[0]])
 
 
+@verifies(
+    "surfaces.HeightField",
+    r"$\tfrac75 s'^2 \dot u^2/2 + g z(u)$ is constant",
+    "own integration: SciPy",
+)
 def test_a_ball_rolls_on_a_paraboloid():
     solution = rolls(paraboloid())
     exact = by_quadrature(solution.t)
     assert np.ptp(exact[:, 0]) > 0.3
-    assert solution.position[:, 0, [0, 2]] == pytest.approx(exact, abs=1e-8)
-    assert np.ptp(solution.total_energy) < 1e-9
+    agree(solution.position[:, 0, [0, 2]], exact, atol=1e-8)
+    agree(np.ptp(solution.total_energy), 0.0, atol=1e-9)
     same = rolls(S.Surface(lambda x, y, z: z - (x * x + y * y) / (2 * R), BOX))
-    assert same.position == pytest.approx(solution.position, abs=1e-8)
+    agree(same.position, solution.position, atol=1e-8)
 
 
 def wild(ground, at):
@@ -76,6 +82,11 @@ def wild(ground, at):
     return carom.simulate(scene, 1.2, **TIGHT)
 
 
+@verifies(
+    "surfaces.Surface",
+    "the function of a sphere moves a ball as the sphere does",
+    "invariant: two descriptions of one surface",
+)
 @pytest.mark.parametrize("with_functions", [False, True])
 def test_the_function_of_a_sphere_is_a_sphere(with_functions):
     given = (lambda x, y, z: (-2 * x, -2 * y, -2 * z), lambda *x: -2.0 * np.eye(3)) * with_functions
@@ -85,8 +96,8 @@ def test_the_function_of_a_sphere_is_a_sphere(with_functions):
     )
     two = wild(S.InsideSphere(0.5), (1.0, 2.0, 3.0))
     assert len(one.impacts) == len(two.impacts) > 5
-    assert one.impacts.time == pytest.approx(two.impacts.time, abs=1e-8)
-    assert one.position == pytest.approx(two.position, abs=1e-7)
+    agree(one.impacts.time, two.impacts.time, atol=1e-8)
+    agree(one.position, two.position, atol=1e-7)
 
 
 def no_map(x):

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import carom
+from verified import agree, verifies
 
 G, R = 9.81, 0.1
 
@@ -21,6 +22,7 @@ def ball(rolling, pivoting, *, mu=0.5, angle=0.0, duration=1.0, step=0.01, **mot
     return carom.simulate(scene, duration, step=step)
 
 
+@verifies("add_contact(rolling_friction=)", r"$\dot v = -\tfrac57 g d/r$, then rest", "closed form")
 @pytest.mark.parametrize("step", [0.1, 0.01, 1e-3])
 def test_rolls_to_a_stop(step):
     # J w' = r T - d N, m v' = -T, v = r w: v' = -d g / (7/5 r). Stops after v0^2/(2 a), for good.
@@ -28,18 +30,19 @@ def test_rolls_to_a_stop(step):
     a = d * G / (1.4 * R)
     s = ball(d, 0.0, velocity=(v0, 0, 0), angular_velocity=(0, v0 / R, 0), duration=2.0, step=step)
     v = np.maximum(v0 - a * s.t, 0.0)
-    np.testing.assert_allclose(s.velocity[:, 0, 0], v, rtol=0, atol=2e-14)
-    np.testing.assert_allclose(s.angular_velocity[:, 0, 1], v / R, rtol=0, atol=2e-13)
+    agree(s.velocity[:, 0, 0], v, atol=2e-14)
+    agree(s.angular_velocity[:, 0, 1], v / R, atol=2e-13)
     way = np.where(v > 0, v0 * s.t - 0.5 * a * s.t**2, v0**2 / (2 * a))
-    np.testing.assert_allclose(s.position[:, 0, 0], way, rtol=0, atol=1e-14)
+    agree(s.position[:, 0, 0], way, atol=1e-14)
     late = s.t > v0 / a + step
     assert np.all(s.velocity[late] == 0.0)
     assert np.all(s.angular_velocity[late] == 0.0)
     assert np.all(s.position[late] == s.position[-1])
     # friction takes all of it, 7/10 m v0^2
-    assert s.ledger.friction[-1] == pytest.approx(-0.7 * 2 * v0**2, rel=1e-12)
+    agree(s.ledger.friction[-1], -0.7 * 2 * v0**2, rtol=1e-12)
 
 
+@verifies("add_static", "the same on the top of a box", "closed form")
 @pytest.mark.few(2)
 @pytest.mark.parametrize("shape", [carom.Sphere(R), carom.Capsule(R, 0.2), carom.Cylinder(R, 0.2)])
 @pytest.mark.parametrize("friction", [1e-3, 5e-3])
@@ -63,21 +66,20 @@ def test_rolls_on_a_static_box(shape, friction):
         a = friction * G / R / (1 + np.max(inertia) / R**2)
         s = carom.simulate(scene, duration)
         way = v0 * duration - 0.5 * a * duration**2
-        assert s.position[-1, 0, 0] == pytest.approx(way, abs=1e-11)
+        agree(s.position[-1, 0, 0], way, atol=1e-11)
         steps.append(s.stats["trial_steps"])
     assert steps[1] <= 1.1 * steps[0]
 
 
+@verifies("add_contact(pivoting_friction=)", r"$\tfrac25 m r^2 \dot\omega = -d m g$", "closed form")
 @pytest.mark.parametrize("step", [0.1, 0.01])
 def test_spins_to_a_stop(step):
     # 2/5 m r^2 w' = -d m g, on the spot.
     d, w0 = 0.002, 5.0
     a = 2.5 * d * G / R**2
     s = ball(0.0, d, angular_velocity=(0, 0, w0), duration=1.5, step=step)
-    np.testing.assert_allclose(
-        s.angular_velocity[:, 0, 2], np.maximum(w0 - a * s.t, 0.0), rtol=0, atol=1e-13
-    )
-    np.testing.assert_allclose(s.position[:, 0], [(0, 0, R)] * len(s.t), rtol=0, atol=1e-15)
+    agree(s.angular_velocity[:, 0, 2], np.maximum(w0 - a * s.t, 0.0), atol=1e-13)
+    agree(s.position[:, 0], [(0, 0, R)] * len(s.t), atol=1e-15)
     assert np.all(s.angular_velocity[s.t > w0 / a + step] == 0.0)
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import carom
+from verified import agree, verifies
 
 G = 9.81
 
@@ -20,26 +21,28 @@ def block(sides, velocity, spin, friction, inertia=None, gravity=(0.0, 0.0, -G))
     return scene
 
 
+@verifies("Box", r"slides $v^2/2\mu g$", "closed form")
 @pytest.mark.parametrize("method", ["rk5", "rk8"])
 def test_a_straight_slide_ends_where_it_must(method):
     # x = v^2/(2 mu g), all of the energy m v^2/2 is lost to friction
     s = carom.simulate(
         block((0.2, 0.1, 0.02), (1.5, 0.0), 0.0, 0.3), 2.0, save_at=2.0, method=method
     )
-    assert s.position[-1, 0, 0] == pytest.approx(1.5**2 / (2 * 0.3 * G), abs=1e-9)
+    agree(s.position[-1, 0, 0], 1.5**2 / (2 * 0.3 * G), atol=1e-9)
     assert s.stats["trial_steps"] < 20
     assert not s.velocity[-1].any()
-    assert s.ledger.friction[-1] == pytest.approx(-0.5 * 1.5**2, rel=1e-12)
+    agree(s.ledger.friction[-1], -0.5 * 1.5**2, rtol=1e-12)
 
 
+@verifies("Box", r"spins $J\omega^2/2\mu m g r$", "closed form")
 def test_a_spin_ends_where_it_must():
     # corners at the distance r slip across their arms: J dw/dt = -mu m g r, the angle is J w^2/(2 mu m g r)
     a, b, w, mu = 0.2, 0.1, 7.0, 0.2
     J, r = (a * a + b * b) / 12.0, np.hypot(a, b) / 2
     s = carom.simulate(block((a, b, 0.02), (0.0, 0.0), w, mu), 2.0, save_at=2.0)
     angle = 2.0 * np.arctan2(s.orientation[-1, 0, 3], s.orientation[-1, 0, 0])
-    assert angle == pytest.approx(J * w * w / (2.0 * mu * G * r), abs=1e-8)
-    assert np.abs(s.position[-1, 0, :2]).max() < 1e-12
+    agree(angle, J * w * w / (2.0 * mu * G * r), atol=1e-8)
+    agree(s.position[-1, 0, :2], 0.0, atol=1e-12)
     assert s.stats["trial_steps"] < 40
 
 

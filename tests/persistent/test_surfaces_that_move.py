@@ -6,15 +6,34 @@ import numpy as np
 import pytest
 
 import carom
+from verified import agree, verifies
 
 G = 9.81
 TIGHT = {"rtol": 1e-10, "atol": 1e-10}
 
 
-def on_belt(shape, mu, e=0.0, *, height=0.0, velocity=(0, 0, 0), spin=(0, 0, 0), **motion):
+#: grounds whose surface is the plane z = 0
+GROUNDS = {
+    "half_space": {"point": (0, 0, 0), "normal": (0, 0, 1)},
+    "static": {"shape": carom.Box(4, 4, 1), "position": (0, 0, -0.5)},
+    "surface": {"definition": carom.surfaces.HeightField(np.zeros((9, 9)), spacing=0.5)},
+}
+
+
+def on_belt(
+    shape,
+    mu,
+    e=0.0,
+    *,
+    height=0.0,
+    velocity=(0, 0, 0),
+    spin=(0, 0, 0),
+    ground="half_space",
+    **motion,
+):
     """Return a scene of one body on or above the plane z = 0, which moves in itself."""
     scene = carom.Scene()
-    belt = scene.add_half_space((0, 0, 0), (0, 0, 1), name="belt", **motion)
+    belt = getattr(scene, f"add_{ground}")(**GROUNDS[ground], name="belt", **motion)
     low = shape.radius if isinstance(shape, carom.Sphere) else shape.lz / 2
     body = scene.add_body(
         shape, mass=2.0, position=(0, 0, low + height), velocity=velocity, angular_velocity=spin,
@@ -29,20 +48,23 @@ def block():
     return carom.Box(0.2, 0.2, 0.05)
 
 
+@verifies(
+    "add_half_space(surface_velocity=)", r"slides for $V/\mu g$, heat $m V^2/2$", "closed form"
+)
 @pytest.mark.parametrize("how", [TIGHT, {"step": 0.01}])
 def test_a_block_put_on_a_belt_slides_and_then_rides(how):
     mu, V = 0.4, 1.5
     s = carom.simulate(on_belt(block(), mu, surface_velocity=(V, 0, 0)), 0.6, **how)
     stop = V / (mu * G)
     x = np.where(s.t < stop, 0.5 * mu * G * s.t**2, V * s.t - V**2 / (2 * mu * G))
-    assert np.allclose(s["body"].position[:, 0], x, atol=1e-9)
+    agree(s["body"].position[:, 0], x, atol=1e-9)
     # the drive gives kinetic energy and as much heat
-    assert s.ledger.loads[-1] == pytest.approx(2.0 * V**2, rel=1e-9)
-    assert s.ledger.friction[-1] == pytest.approx(-(V**2), rel=1e-9)
+    agree(s.ledger.loads[-1], 2.0 * V**2, rtol=1e-9)
+    agree(s.ledger.friction[-1], -(V**2), rtol=1e-9)
     assert not s.warnings
     power = s.surface_power("belt")
-    assert np.allclose(power[(s.t > 0) & (s.t < 0.9 * stop)], mu * 2.0 * G * V, rtol=1e-9)
-    assert np.allclose(power[s.t > 1.1 * stop], 0.0, atol=1e-9)
+    agree(power[(s.t > 0) & (s.t < 0.9 * stop)], mu * 2.0 * G * V, rtol=1e-9)
+    agree(power[s.t > 1.1 * stop], 0.0, atol=1e-9)
 
 
 def test_the_belt_at_rest_sees_the_same_motion():
@@ -61,15 +83,22 @@ def test_the_belt_at_rest_sees_the_same_motion():
     assert np.max(np.abs(a.ledger.residual)) < 1e-8
 
 
+@verifies(
+    "add_{ground}(surface_velocity=)",
+    r"a ball that is dropped gains $\min(\mu (1 + e)\,v, \tfrac27 V)$",
+    "closed form",
+)
+@pytest.mark.parametrize("ground", GROUNDS)
 @pytest.mark.parametrize("mu", [0.05, 0.9])
-def test_a_ball_dropped_on_a_belt_gains_spin_by_the_law_of_impact(mu):
+def test_a_ball_dropped_on_a_belt_gains_spin_by_the_law_of_impact(mu, ground):
     V, e, h, r = 2.0, 0.5, 0.3, 0.1
-    s = carom.simulate(on_belt(carom.Sphere(r), mu, e, height=h, surface_velocity=(V, 0, 0)), 0.3)
+    moves = {"ground": ground, "surface_velocity": (V, 0, 0)}
+    s = carom.simulate(on_belt(carom.Sphere(r), mu, e, height=h, **moves), 0.3)
     gained = min(mu * (1 + e) * np.sqrt(2 * G * h), 2 / 7 * V)
-    assert s["body"].velocity[-1, 0] == pytest.approx(gained, rel=1e-9)
-    assert s["body"].angular_velocity[-1, 1] == pytest.approx(-2.5 * gained / r, rel=1e-9)
+    agree(s["body"].velocity[-1, 0], gained, rtol=1e-9)
+    agree(s["body"].angular_velocity[-1, 1], -2.5 * gained / r, rtol=1e-9)
     loss = np.sum(s.impacts.energy_change)
-    assert s.ledger.loads[-1] == pytest.approx(2.0 * gained * V, rel=1e-9)
+    agree(s.ledger.loads[-1], 2.0 * gained * V, rtol=1e-9)
     assert s.ledger.impacts[-1] == pytest.approx(loss)
     assert loss < 0.0
     assert np.max(np.abs(s.ledger.residual)) < 1e-9
@@ -101,16 +130,17 @@ def rollers(rate, mu=0.2, a=0.5, thick=0.02, at=0.1):
     return scene
 
 
+@verifies("add_static(surface_spin=)", r"$\omega^2 = \mu g/(a - \mu d/2)$", "closed form")
 def test_a_plank_on_counter_rotating_rollers_is_harmonic():
     mu, a, thick, at = 0.2, 0.5, 0.02, 0.1
     s = carom.simulate(rollers(30.0), 3.0, **TIGHT)
     w = np.sqrt(mu * G / (a - mu * thick / 2))  # 2 mu g/L, and friction below the centre
-    assert np.allclose(s["plank"].position[:, 0], at * np.cos(w * s.t), atol=1e-7)
-    assert np.max(np.abs(s.ledger.residual)) < 1e-6
+    agree(s["plank"].position[:, 0], at * np.cos(w * s.t), atol=1e-7)
+    agree(s.ledger.residual, 0.0, atol=1e-6)
     assert not s.warnings
     drive = s.surface_power("left") + s.surface_power("right")
     normal = mu * 3.0 * G * 30.0 * 0.1  # both tops run against the friction with all of the weight
-    assert np.allclose(drive[1:], normal, rtol=1e-6)
+    agree(drive[1:], normal, rtol=1e-6)
 
 
 def test_it_leaves_rollers_that_turn_outwards():
@@ -141,6 +171,7 @@ def test_a_block_on_a_turntable_rides_as_long_as_friction_holds_it(rides):
     assert np.max(np.abs(s.ledger.residual)) < 1e-6
 
 
+@verifies("add_half_space(surface_spin=)", r"circles at $\tfrac27$ of the rate", "closed form")
 def test_a_ball_that_rolls_on_a_turntable_goes_in_circles_at_two_sevenths():
     W, v, r = 3.0, 0.4, 0.1
     scene = carom.Scene()
@@ -153,7 +184,7 @@ def test_a_ball_that_rolls_on_a_turntable_goes_in_circles_at_two_sevenths():
     s = carom.simulate(scene, 3.0, **TIGHT)
     turn = 2 / 7 * W
     x = v / turn * np.c_[np.sin(turn * s.t), 1 - np.cos(turn * s.t)]
-    assert np.allclose(s["ball"].position[:, :2], x, atol=1e-7)
+    agree(s["ball"].position[:, :2], x, atol=1e-7)
 
 
 def test_pivoting_friction_takes_a_ball_to_the_spin_of_its_table():

@@ -9,6 +9,7 @@ from scipy.spatial.transform import Rotation
 import carom
 from carom.collision.api import nearest_points
 from carom.geometry import quaternion
+from verified import agree, verifies
 
 TURN = Rotation.from_euler("zyx", (90, 0, 30), degrees=True)
 Q = TURN.as_quat()[[3, 0, 1, 2]]
@@ -19,6 +20,7 @@ def placed(orientation):
     return body.orientation
 
 
+@verifies("axis_angle", "rotation vectors", "other program: SciPy's Rotation")
 @pytest.mark.parametrize("form", ["rotation", "matrix", "euler", "quaternion", "axis"])
 def test_each_form_is_the_same_rotation(form):
     vector = TURN.as_rotvec(degrees=True)
@@ -26,16 +28,15 @@ def test_each_form_is_the_same_rotation(form):
         "rotation": TURN, "matrix": TURN.as_matrix(), "euler": carom.euler("zyx", (90, 0, 30)),
         "quaternion": tuple(Q), "axis": carom.axis_angle(vector, np.linalg.norm(vector)),
     }  # fmt: skip
-    np.testing.assert_allclose(quaternion.matrix(placed(given[form])), TURN.as_matrix(), atol=4e-16)
+    agree(quaternion.matrix(placed(given[form])), TURN.as_matrix(), atol=4e-16)
 
 
+@verifies("euler", "Euler angles", "other program: SciPy's Rotation")
 @pytest.mark.parametrize("axes", ["z", "xy", "xyz", "zxz", "Z", "XY", "ZYX", "YXY"])
 def test_euler_angles_are_those_of_scipy(axes):
     angles = np.random.default_rng(1).uniform(-400, 400, (5, len(axes)))
     found = quaternion.matrix(carom.euler(axes, angles))
-    np.testing.assert_allclose(
-        found, Rotation.from_euler(axes, angles, degrees=True).as_matrix(), atol=3e-15
-    )
+    agree(found, Rotation.from_euler(axes, angles, degrees=True).as_matrix(), atol=3e-15)
 
 
 def test_a_quarter_turn_about_z_takes_x_to_y():

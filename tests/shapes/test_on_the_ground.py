@@ -8,6 +8,7 @@ import pytest
 import carom
 from carom.geometry import quaternion
 from carom.scene import Capsule, Cylinder, Disc, Ellipsoid, Scene, Sphere
+from verified import agree, verifies
 
 G = 9.81
 R = 0.05
@@ -64,6 +65,7 @@ def test_a_puck_that_wobbles_comes_to_rest():
     assert np.max(np.abs(s.ledger.residual)) < 1e-4 * s.total_energy[0]
 
 
+@verifies("Cylinder", r"$a = g \sin\alpha/(1 + J/m r^2)$", "closed form")
 @pytest.mark.parametrize(("hollow", "factor"), [(False, 2 / 3), (True, 1 / 2)])
 def test_a_cylinder_rolls_down_an_incline(hollow, factor):
     # a = g sin(alpha)/(1 + J/(m r^2)), J/(m r^2) = 1/2 or 1: constant, exact for any step.
@@ -77,20 +79,21 @@ def test_a_cylinder_rolls_down_an_incline(hollow, factor):
         Cylinder(R, 0.2), 0.5, 0.01, normal=normal, position=R * normal, friction=0.5, **turn
     )
     rate = factor * G * np.sin(angle)
-    np.testing.assert_allclose(s.velocity[:, 0] @ down, rate * s.t, rtol=0, atol=1e-9)
-    np.testing.assert_allclose(s.position[-1, 0] @ down, 0.5 * rate * 0.25, rtol=0, atol=1e-9)
+    agree(s.velocity[:, 0] @ down, rate * s.t, atol=1e-9)
+    agree(s.position[-1, 0] @ down, 0.5 * rate * 0.25, atol=1e-9)
     assert np.all(s.contact_mode[1:] == 2)
-    assert s.contact_force[-1, 0, 0] == pytest.approx(G * np.cos(angle), rel=1e-6)
+    agree(s.contact_force[-1, 0, 0], G * np.cos(angle), rtol=1e-6)
 
 
+@verifies("Ellipsoid", "equal axes: moves as a ball", "invariant: two descriptions of one shape")
 def test_an_ellipsoid_of_equal_axes_moves_as_a_ball():
     start = {"position": (0, 0, 0.3), "velocity": (1, 0.5, 0), "angular_velocity": (3, -1, 2)}
     one = on_ground(Ellipsoid(0.1, 0.1, 0.1), 0.8, 2e-3, **start)
     two = on_ground(Sphere(0.1), 0.8, 2e-3, **start)
     assert len(one.impacts) == len(two.impacts) >= 5
     assert one.events.kind.tolist() == two.events.kind.tolist()
-    np.testing.assert_allclose(one.position, two.position, rtol=0, atol=1e-12)
-    np.testing.assert_allclose(one.angular_velocity, two.angular_velocity, rtol=0, atol=1e-11)
+    agree(one.position, two.position, atol=1e-12)
+    agree(one.angular_velocity, two.angular_velocity, atol=1e-11)
 
 
 @pytest.mark.parametrize("friction", [0.0, 0.3])
@@ -111,6 +114,7 @@ def test_an_ellipsoid_bounces(friction):
         np.testing.assert_allclose(L[:, 2], L[0, 2], rtol=0, atol=1e-14)
 
 
+@verifies("Disc", "rolls straight on at a constant speed", "closed form")
 def test_a_coin_rolls_upright():
     # v = 1 m/s is far above sqrt(g r/3), where it would fall: straight on, at constant speed, to round-off
     r = 0.0125
@@ -119,9 +123,9 @@ def test_a_coin_rolls_upright():
         Disc(r), 0.4, 2e-3, position=(0, 0, r), orientation=turn, velocity=(1, 0, 0),
         angular_velocity=(0, 1 / r, 0),
     )  # fmt: skip
-    np.testing.assert_allclose(s.velocity[:, 0], [(1, 0, 0)] * len(s.t), rtol=0, atol=1e-12)
-    assert s.position[-1, 0, 0] == pytest.approx(0.4, abs=1e-12)
-    assert np.max(np.abs(s.position[:, 0, 2] - r)) < 1e-12
+    agree(s.velocity[:, 0], [(1, 0, 0)] * len(s.t), atol=1e-12)
+    agree(s.position[-1, 0, 0], 0.4, atol=1e-12)
+    agree(s.position[:, 0, 2], r, atol=1e-12)
 
 
 def rolling_in_a_circle(step):
@@ -149,11 +153,16 @@ def rolling_in_a_circle(step):
     return np.max(np.linalg.norm(run.position[:, 0] - exact, axis=1))
 
 
+@verifies(
+    "Disc",
+    r"steady circle: $s = (\tfrac14\Omega^2 \sin\theta - g/r)\cos\theta/(\tfrac32\Omega\sin\theta)$",
+    "closed form",
+)
 def test_a_disc_rolls_in_a_circle_at_order_4():
     # a step of 10 ms would lose 1e-9 of the energy, and is cut
     errors = np.array([rolling_in_a_circle(step) for step in (0.005, 0.0025, 0.00125)])
     np.testing.assert_allclose(np.log2(errors[:-1] / errors[1:]), 4.0, rtol=0, atol=0.15)
-    assert errors[-1] < 1e-10
+    agree(errors[-1], 0.0, atol=1e-10)
 
 
 @pytest.mark.few(8)

@@ -8,6 +8,7 @@ import pytest
 
 import carom
 from carom.visual.surfaces import surface
+from verified import agree, verifies
 
 
 def disc(a):
@@ -19,14 +20,15 @@ def star(teeth=8):
     return [(r * math.cos(a), r * math.sin(a)) for a in turns for r in (0.04, 0.05)]
 
 
+@verifies("Profile", "a circle: volume, inertia and support of a cylinder", "closed form")
 @pytest.mark.parametrize("way", [1.0, -1.0])
 def test_circle_is_a_cylinder(way):
     shape, cylinder = carom.Profile(lambda a: disc(way * a), 0.01), carom.Cylinder(0.05, 0.01)
-    np.testing.assert_allclose(shape.centroid, (0.02, 0, 0), atol=1e-13)
-    assert shape.volume == pytest.approx(cylinder.volume, rel=1e-11)
-    np.testing.assert_allclose(shape.inertia(2.0), cylinder.inertia(2.0), atol=1e-14)
-    assert shape.size == pytest.approx(cylinder.size, rel=1e-12)
-    np.testing.assert_allclose(shape.support((0.6, -0.8, 0))[:2], (0.03, -0.04), atol=1e-12)
+    agree(shape.centroid, (0.02, 0, 0), atol=1e-13)
+    agree(shape.volume, cylinder.volume, rtol=1e-11)
+    agree(shape.inertia(2.0), cylinder.inertia(2.0), atol=1e-14)
+    agree(shape.size, cylinder.size, rtol=1e-12)
+    agree(shape.support((0.6, -0.8, 0))[:2], (0.03, -0.04), atol=4e-12)
 
 
 def test_square_is_a_box():
@@ -38,10 +40,11 @@ def test_square_is_a_box():
     np.testing.assert_allclose(square.support((1, 1, 0.1)), (0.5, 0.5, 1.0))
 
 
+@verifies("Profile", r"$r = R (1 + a \cos 3t)$: area $\pi R^2 (1 + a^2/2)$", "closed form")
 def test_area_by_polar_integral():
     # r = R (1 + a cos 3 t): the area is pi R^2 (1 + a^2/2)
     shape = carom.Profile(lambda t: 0.05 * (1 + 0.3 * math.cos(3 * t)), 0.01)
-    assert shape.volume == pytest.approx(0.01 * math.pi * 0.05**2 * (1 + 0.3**2 / 2), rel=1e-11)
+    agree(shape.volume, 0.01 * math.pi * 0.05**2 * (1 + 0.3**2 / 2), rtol=1e-11)
     # kappa at the hollows, t = pi/3: (r^2 - r r'')/r^3 with r = .7 R, r'' = 2.7 R
     np.testing.assert_allclose(
         shape.pieces[0].hollows[:, 1], (0.7 - 2.7) / 0.7**2 / 0.05, rtol=1e-3

@@ -12,6 +12,7 @@ from campaigns import grains
 from campaigns.case import run
 from carom import Friction
 from carom.geometry import quaternion
+from verified import agree, verifies
 
 G = 9.81
 
@@ -46,6 +47,7 @@ def pull(law, axis, u):
     return -shrunk * E.T @ (D * w) / size
 
 
+@verifies("Friction", "elliptic cone: drift along a fixed direction", "closed form")
 @pytest.mark.few(3)
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 @pytest.mark.parametrize("ratio", [1 / 30, 0.3, 4.0, 30.0])
@@ -58,8 +60,8 @@ def test_a_block_with_a_grooved_foot_drifts(tolerance, ratio):
     assert abs(slope @ [-d[1], d[0]]) > 0.05 * np.linalg.norm(slope)
     scene = on_floor(carom.Box(0.2, 0.3, 0.02), law, (*slope, -n), position=(0, 0, 0.01))
     found = carom.simulate(scene, 1.0, rtol=tolerance, atol=tolerance)
-    assert found.position[-1, 0, :2] == pytest.approx(0.5 * a * d, abs=tolerance)
-    assert found.velocity[-1, 0, :2] == pytest.approx(a * d, abs=tolerance)
+    agree(found.position[-1, 0, :2], 0.5 * a * d, atol=tolerance)
+    agree(found.velocity[-1, 0, :2], a * d, atol=tolerance)
     assert np.max(np.diff(found.ledger.friction)) <= 0.0
 
 
@@ -176,6 +178,7 @@ def on_three_feet(law, velocity, spin, inertia, times):
     return y
 
 
+@verifies("Friction", "a skate on three feet", "own integration: SciPy")
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 @pytest.mark.parametrize(
     ("law", "velocity", "spin"),
@@ -189,11 +192,11 @@ def test_a_skate_that_turns(law, velocity, spin, tolerance):
     found = carom.simulate(scene, 0.25, rtol=tolerance, atol=tolerance)
     exact = on_three_feet(law, velocity, spin, scene["block"].inertia[2, 2], found.t)
     # errors of steps add up
-    np.testing.assert_allclose(found.position[:, 0, :2], exact[:2].T, rtol=0, atol=10 * tolerance)
+    agree(found.position[:, 0, :2], exact[:2].T, atol=10 * tolerance)
     spin = found.angular_velocity[:, 0, 2]
-    np.testing.assert_allclose(spin, exact[5], rtol=0, atol=200 * tolerance)
+    agree(spin, exact[5], atol=200 * tolerance)
     assert np.max(np.diff(found.ledger.friction)) <= 0.0
-    assert np.abs(found.ledger.residual).max() < 20 * tolerance
+    agree(found.ledger.residual, 0.0, atol=20 * tolerance)
     # each force has the direction of the normal of its ellipse
     rows = found.forces
     assert len(rows.force) == 3 * len(found.t)
@@ -205,11 +208,9 @@ def test_a_skate_that_turns(law, velocity, spin, tolerance):
         axis = quaternion.rotate(found.orientation[t, 0], law.axis)
         expected = rows.force[k, 0] * pull(law, axis, u[:2])
         # the last stage of the step before wrote the force
-        assert rows.vector[k, :2] == pytest.approx(expected, abs=1e-5 * G)
+        agree(rows.vector[k, :2], expected, atol=1e-5 * G)
         across = np.cross((0, 0, 1), axis)
-        assert rows.force[k, 1:] == pytest.approx(
-            [rows.vector[k] @ axis, rows.vector[k] @ across], abs=1e-12
-        )
+        agree(rows.force[k, 1:], [rows.vector[k] @ axis, rows.vector[k] @ across], atol=1e-12)
 
 
 def impulse_of(W, u, law, e, kind):

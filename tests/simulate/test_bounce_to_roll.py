@@ -5,6 +5,7 @@ import pytest
 
 import carom
 from simulate.scenes import G, ball, event_times
+from verified import agree, verifies
 
 
 def spinner(spin, e, mu=0.2, height=0.9):
@@ -27,28 +28,27 @@ def test_bounces_to_rest():
     assert np.all(a.velocity[-1] == 0.0)
 
 
+@verifies("simulate", r"a ball strikes, slides, and rolls with $\tfrac27\omega_0 r$", "closed form")
 @pytest.mark.parametrize("method", ["rk4", "paper"])
 @pytest.mark.parametrize("step", [0.05, 1e-3])
 def test_plastic_impact_then_slides_then_rolls(method, step):
     # w = 50, e = 0, mu = .2: the impact at .42835 slips, v = -mu v_1, w = 50 - 2.5 mu v_1/r; it slides until
     # .728119994175 and rolls with v = -2/7 w_0 r = -10/7.
     a = carom.simulate(spinner(50.0, 0.0), 1.1, step=step, method=method)
-    assert a.impacts.time == pytest.approx([0.4283529368781193], abs=1e-13)
-    np.testing.assert_allclose(
-        np.sort(np.abs(a.impacts.impulse[0])), (0, 0.8404284621548701, 4.2021423107743505),
-        rtol=0, atol=1e-12,
-    )  # fmt: skip
+    agree(a.impacts.time, [0.4283529368781193], atol=1e-13)
+    impulse = np.sort(np.abs(a.impacts.impulse[0]))
+    agree(impulse, (0, 0.8404284621548701, 4.2021423107743505), atol=1e-12)
     _, _, v, w = a.evaluate(a.impacts.time[0])
-    assert v[0, 0] == pytest.approx(-0.8404284621548701, abs=1e-12)
-    assert w[0, 1] == pytest.approx(-28.98928844612825, abs=1e-11)
-    np.testing.assert_allclose(event_times(a, "sticks"), [0.72811999417504], rtol=0, atol=1e-12)
-    assert a.position[-1, 0, 0] == pytest.approx(-0.871342861303543, abs=1e-10)
-    assert a.velocity[-1, 0, 0] == pytest.approx(-1 / 0.7, abs=1e-11)
-    assert a.angular_velocity[-1, 0, 1] == pytest.approx(-1 / 0.07, abs=1e-10)
+    agree(v[0, 0], -0.8404284621548701, atol=1e-12)
+    agree(w[0, 1], -28.98928844612825, atol=1e-11)
+    agree(event_times(a, "sticks"), [0.72811999417504], atol=1e-12)
+    agree(a.position[-1, 0, 0], -0.871342861303543, atol=1e-10)
+    agree(a.velocity[-1, 0, 0], -1 / 0.7, atol=1e-11)
+    agree(a.angular_velocity[-1, 0, 1], -1 / 0.07, atol=1e-10)
     # the angle, 33.21642846741143, modulo full turns: order 4 in the turn of a step
     angle = 2 * np.arctan2(-a.orientation[-1, 0, 2], a.orientation[-1, 0, 0])
     error = 1e-9 + 1e-3 * (30 * step) ** 4
-    assert np.sin(0.5 * (angle - 33.21642846741143)) == pytest.approx(0, abs=error)
+    agree(np.sin(0.5 * (angle - 33.21642846741143)), 0, atol=error)
 
 
 def test_plastic_impact_that_sticks():

@@ -7,10 +7,13 @@ from hypothesis import strategies as st
 
 import carom
 from simulate.scenes import LAWS, G, ball, bounce_times, event_times, total, zeno_time
+from verified import agree, verifies
 
 STEPS = (0.5, 0.1, 0.03, 0.01, 0.001)
 
 
+@verifies("add_half_space", "$t_{k+1} = t_k + 2 t_1 e^k$, speeds $e^{k-1} g t_1$", "closed form")
+@verifies("simulate(step=)", "impacts of a ball at the same times for any step", "closed form")
 @pytest.mark.few(4)
 @pytest.mark.parametrize("e", [1.0, 0.8])
 @pytest.mark.parametrize("step", [0.5, 0.1, 0.013, 1e-3, 1e-4])
@@ -22,15 +25,13 @@ def test_times_and_speeds_of_impacts(e, step):
     a = carom.simulate(ball(e), duration, step=step)
     expected = bounce_times(count, e)
     expected = expected[expected < duration]
-    np.testing.assert_allclose(a.impacts.time, expected, rtol=0, atol=1e-12)
+    agree(a.impacts.time, expected, atol=1e-12)
     speed = np.sqrt(2 * G * 0.4) * e ** np.arange(len(expected))
-    np.testing.assert_allclose(-a.impacts.relative_velocity_before[:, 0], speed, rtol=0, atol=1e-11)
-    np.testing.assert_allclose(
-        a.impacts.relative_velocity_after[:, 0], e * speed, rtol=0, atol=1e-11
-    )
+    agree(-a.impacts.relative_velocity_before[:, 0], speed, atol=1e-11)
+    agree(a.impacts.relative_velocity_after[:, 0], e * speed, atol=1e-11)
     # dE = -m/2 (1 - e^2) v^2
     loss = -0.5 * (1 - e**2) * speed**2
-    np.testing.assert_allclose(a.impacts.energy_change, loss, rtol=0, atol=1e-11)
+    agree(a.impacts.energy_change, loss, atol=1e-11)
 
 
 @pytest.mark.parametrize("method", ["rk4", "paper"])
@@ -42,15 +43,14 @@ def test_a_hundred_elastic_impacts_keep_the_energy(method):
     np.testing.assert_allclose(a.impacts.time, bounce_times(100, 1.0), rtol=0, atol=1e-10)
 
 
+@verifies("Sphere", "heights $h e^{2k}$", "closed form")
 def test_heights():
     # The apex after impact k is at h e^(2k), half-way between impacts k and k + 1.
     a = carom.simulate(ball(0.8), 2.5, step=0.01)
     t = a.impacts.time
     x, _, v, _ = a.evaluate(0.5 * (t[1:] + t[:-1]))
-    np.testing.assert_allclose(
-        x[:, 0, 2] - 0.1, 0.4 * 0.64 ** np.arange(1.0, len(t)), rtol=0, atol=1e-9
-    )
-    np.testing.assert_allclose(v[:, 0, 2], 0.0, rtol=0, atol=1e-9)
+    agree(x[:, 0, 2] - 0.1, 0.4 * 0.64 ** np.arange(1.0, len(t)), atol=1e-9)
+    agree(v[:, 0, 2], 0.0, atol=1e-9)
 
 
 @pytest.mark.few(5)

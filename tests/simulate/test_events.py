@@ -6,6 +6,7 @@ import numpy as np
 import pytest
 
 import carom
+from verified import agree, verifies
 
 G = 9.81
 WAYS = [{}, {"step": 0.01}]
@@ -57,13 +58,14 @@ def height(z):
     return lambda t, state: state["die"].position[2] - z
 
 
+@verifies("simulate(events=)", "apex at $v_0/g$", "closed form")
 @BOTH
 def test_the_apex_of_a_throw(how):
     """v_z = v_0 - g t is 0 at v_0/g, and the state there is that of the motion: z_0 + v_0^2/(2 g)."""
     solution = carom.simulate(thrown(), 0.3, events=apex, **how)
     (t,), (state,) = solution.t_events[0], solution.state_events[0]
-    assert abs(t - 1.3 / G) < 1e-15
-    assert abs(state.position[0, 2] - 0.3 - 1.3**2 / (2 * G)) < 1e-15
+    agree(t, 1.3 / G, atol=1e-15)
+    agree(state.position[0, 2] - 0.3, 1.3**2 / (2 * G), atol=1e-15)
     assert state.t == t
     assert solution.status is carom.Status.SUCCESS
     assert solution.t[-1] == 0.3
@@ -100,6 +102,11 @@ def test_a_terminal_event_ends_the_run(how):
     assert len(solution.t_events[0]) == 1
 
 
+@verifies(
+    "simulate(events=)",
+    r"passages of a pendulum at $(\tfrac14, \tfrac34, \tfrac54)$ of $4\sqrt{L/g}\,K$",
+    "closed form",
+)
 def test_a_number_of_times():
     """A pendulum passes its lowest point each half period; the third time ends the run."""
     scene, L, q = pendulum()
@@ -109,7 +116,7 @@ def test_a_number_of_times():
     assert len(solution.t_events[0]) == 3
     assert solution.t_events[0][-1] == solution.t[-1]
     period = 4.0 * math.sqrt(L / G) * ellipk(math.sin(q / 2.0) ** 2)
-    assert abs(solution.t_events[0] - period * np.array([0.25, 0.75, 1.25])).max() < 1e-9 * period
+    agree(solution.t_events[0], period * np.array([0.25, 0.75, 1.25]), atol=1e-9 * period)
 
 
 def ellipk(m):

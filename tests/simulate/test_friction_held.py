@@ -6,6 +6,7 @@ import pytest
 import carom
 from carom.geometry import quaternion
 from simulate.scenes import G
+from verified import agree, verifies
 
 
 def thrown(shape, contact, **body):
@@ -15,6 +16,11 @@ def thrown(shape, contact, **body):
     return scene
 
 
+@verifies(
+    "add_contact(friction_held=)",
+    r"slides $v^2/2\mu g$ by the friction of persistent contact",
+    "closed form",
+)
 @pytest.mark.parametrize("radius", [0.0, 0.01])
 def test_a_block_slides_by_the_friction_of_held_contacts(radius):
     # stops after v0^2/(2 mu g), at t = v0/(mu g) = 0.51 s
@@ -23,9 +29,9 @@ def test_a_block_slides_by_the_friction_of_held_contacts(radius):
     contact = {"restitution": 0.0, "friction": 0.9, "friction_held": mu}
     scene = thrown(box, contact, position=(0, 0, 0.05), velocity=(v0, 0, 0))
     a = carom.simulate(scene, 0.7, step=0.01)
-    assert a.position[-1, 0, 0] == pytest.approx(v0**2 / (2 * mu * G), abs=1e-9)
+    agree(a.position[-1, 0, 0], v0**2 / (2 * mu * G), atol=1e-9)
     assert np.all(a.velocity[-1] == 0.0)
-    np.testing.assert_allclose(a.position[:, 0, 2], 0.05, rtol=0, atol=1e-14)
+    agree(a.position[:, 0, 2], 0.05, atol=1e-14)
 
 
 def test_an_impact_has_the_friction_of_impacts():

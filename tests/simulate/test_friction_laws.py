@@ -10,6 +10,7 @@ from scipy.interpolate import PchipInterpolator
 
 import carom
 from carom import Friction
+from verified import agree, verifies
 
 G = 9.81
 LAWS = {
@@ -41,6 +42,7 @@ def on_a_spring(m, k, N, V, law, joint=False):
     return scene
 
 
+@verifies("Friction.fit", "Stribeck's law as a function, and its motion", "closed form")
 def test_a_function_is_a_law(tmp_path):
     """Stribeck's law as a function, which jumps at 0; a kink; and the motion, also of a file."""
 
@@ -49,9 +51,9 @@ def test_a_function_is_a_law(tmp_path):
 
     law, v = Friction.fit(stribeck), np.append(0.0, np.logspace(-12, 6, 3000))[1:]
     assert law.bound == 0.7
-    assert np.max(np.abs(law(v) - LAWS["stribeck"](v))) < 1e-10  # of values up to .6
+    agree(law(v), LAWS["stribeck"](v), atol=1e-10)  # of values up to .6
     kink = Friction.fit(lambda v: max(0.1, 0.4 - 0.3 * v))
-    np.testing.assert_allclose(kink(v), np.maximum(0.1, 0.4 - 0.3 * v), rtol=1e-10)
+    agree(kink(v), np.maximum(0.1, 0.4 - 0.3 * v), rtol=1e-10)
     assert len(kink.ends) == 3
     scenes = [
         on_a_spring(1.0, 50.0, 10.0, 0.3, one)
@@ -59,7 +61,7 @@ def test_a_function_is_a_law(tmp_path):
     ]
     one, two = (carom.simulate(scene, 1.0, save_at=0.1) for scene in scenes)
     # the stated error of mu, times g t^2 / 2, and what both runs allow themselves
-    assert np.max(np.abs(one.position - two.position)) < 1e-7
+    agree(one.position, two.position, atol=1e-7)
     one.save(tmp_path / "run.nc")
     again = carom.Solution.load(tmp_path / "run.nc").scene
     assert again.contacts[0].friction == scenes[0].contacts[0].friction
@@ -98,6 +100,9 @@ def random_case(seed):
     return m, k, N, V, law
 
 
+@verifies(
+    "Friction", r"stick-slip: period $2D/V + (2\pi - 2\arctan(D\omega/V))/\omega$", "closed form"
+)
 @pytest.mark.few(10)
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 @pytest.mark.parametrize("seed", range(20))
@@ -112,9 +117,14 @@ def test_stick_slip_has_its_period(seed, tolerance):
     # redundant corners are right to 4e-11: 6 to 9 times the tolerance, by the processor; ten times that
     fastest = np.max(found.velocity[:, 0, 0])
     allowed = (1.0 if tolerance > 1e-9 else 90.0) * tolerance * (1.0 + fastest)
-    assert found.position[:, 0, 0] == pytest.approx(stick_slip(found.t, *given)[0], abs=allowed)
+    agree(found.position[:, 0, 0], stick_slip(found.t, *given)[0], atol=allowed)
 
 
+@verifies(
+    "add_half_space(surface_velocity=)",
+    "stick-slip on a belt has the period of that on a floor",
+    "closed form",
+)
 @pytest.mark.few(10)
 @pytest.mark.parametrize("tolerance", [1e-6, 1e-10])
 @pytest.mark.parametrize("seed", range(20))
@@ -130,13 +140,13 @@ def test_stick_slip_on_a_belt_has_the_same_period(seed, tolerance):
     fastest = np.max(np.abs(found.velocity[:, 0, 0] - V))
     allowed = (1.0 if tolerance > 1e-9 else 70.0) * tolerance * (1.0 + fastest)
     exact = V * found.t - stick_slip(found.t, m, k, N, V, law)[0]
-    assert found.position[:, 0, 0] == pytest.approx(exact, abs=allowed)
+    agree(found.position[:, 0, 0], exact, atol=allowed)
     # persistent from the first cycle on: no impact, and one interval of stick and one of slip a cycle
     assert len(found.impacts) == 0
     assert not np.any(found.events.kind == "opens")
     turns = found.events.time[(found.events.kind == "slips") & (found.events.contact == 0)]
     turns = turns[np.append(True, np.diff(turns) > 0.5 * period)]
-    assert np.diff(turns) == pytest.approx(period, abs=1e3 * allowed)
+    agree(np.diff(turns), period, atol=1e3 * allowed)
     assert len(turns) == 4
 
 
@@ -179,16 +189,19 @@ def stribeck(law, m, k, N, V, times):
     return out
 
 
+@verifies(
+    "Friction", "stick-slip by Stribeck's law and by a table", "own integration: SciPy with events"
+)
 @pytest.mark.parametrize("name", ["stribeck", "gaussian", "table"])
 def test_stick_slip_by_a_law_of_the_speed(name):
     m, k, N, V, law = 1.0, 50.0, 10.0, 0.05, LAWS[name]
     found = carom.simulate(on_a_spring(m, k, N, V, law), 4.0, rtol=1e-9, atol=1e-9)
     exact = stribeck(law, m, k, N, V, found.t)
-    assert found.position[:, 0, 0] == pytest.approx(exact, abs=1e-7)
+    agree(found.position[:, 0, 0], exact, atol=1e-7)
     assert np.ptp(exact) > 0.05
     belt = carom.simulate(on_a_belt(m, k, N, V, law), 4.0, rtol=1e-9, atol=1e-9)
     exact = V * belt.t - stribeck(law, m, k, N, V, belt.t)
-    assert belt.position[:, 0, 0] == pytest.approx(exact, abs=1e-7)
+    agree(belt.position[:, 0, 0], exact, atol=1e-7)
 
 
 @pytest.mark.parametrize("speed", [0.0, 0.5])
@@ -286,18 +299,20 @@ def test_impacts_by_the_slip(name, seeds):
     assert sticks >= 1
 
 
+@verifies("Friction", r"$\mu = \mu_k + (\mu_s - \mu_k)\,e^{-(s/s_0)^n}$", "closed form")
+@verifies("Friction.table", "monotone cubics", "other program: SciPy's PchipInterpolator")
 @pytest.mark.plain
 def test_values_by_their_formulas():
     s = np.append(0.0, np.logspace(-12, 6, 999))
-    assert LAWS["kinetic"](s) == pytest.approx(0.2)
-    assert LAWS["stribeck"](s) == pytest.approx(0.2 + 0.4 * np.exp(-s / 0.5), abs=1e-15)
-    assert LAWS["gaussian"](s) == pytest.approx(0.3 + 0.2 * np.exp(-(s**2)), abs=1e-15)
+    agree(LAWS["kinetic"](s), 0.2, rtol=1e-6)
+    agree(LAWS["stribeck"](s), 0.2 + 0.4 * np.exp(-s / 0.5), atol=1e-15)
+    agree(LAWS["gaussian"](s), 0.3 + 0.2 * np.exp(-(s**2)), atol=1e-15)
     table = PchipInterpolator([0.0, 0.5, 2.0, 4.0], [0.5, 0.2, 0.3, 0.25])
-    assert LAWS["table"](s) == pytest.approx(table(np.minimum(s, 4.0)), rel=1e-14)
+    agree(LAWS["table"](s), table(np.minimum(s, 4.0)), rtol=1e-14)
     assert [law.bound for law in LAWS.values()] == [0.6, 0.6, 0.5, 0.5]
     for law in (Friction(0.5, 0.2, 0.3, 0.4), LAWS["table"]):
         difference = (law(0.7 + 1e-5) - law(0.7 - 1e-5)) / 2e-5
-        assert law.slope(0.7) == pytest.approx(difference, rel=1e-8)
+        agree(law.slope(0.7), difference, rtol=1e-8)
         assert pickle.loads(pickle.dumps(law)) == law
 
 

@@ -5,6 +5,7 @@ import pytest
 
 import carom
 from simulate.scenes import G, ball, bounce_times, die, matrix, on_plane, product, total, turn
+from verified import agree, verifies
 
 MODES = ("locate", "project", "work")
 #: the return of "project" puts in energy, and "work" takes it out to first order: known here, and no warning
@@ -26,6 +27,7 @@ def test_no_saved_state_is_inside(mode, method):
     assert len(a.impacts) >= 6
 
 
+@verifies('impact_location="project"', r"each return adds $m g\,\delta$", "closed form")
 def test_project_puts_in_the_work_of_the_return():
     # e = 1: each return by pen at constant velocity adds m g pen; pen is what the impact height
     # lacks: the time of an impact is the end of its step.
@@ -34,22 +36,23 @@ def test_project_puts_in_the_work_of_the_return():
     jumps = np.diff(energy)
     assert np.all(jumps > -1e-13)
     hits = np.searchsorted(a.t, a.impacts.time - 1e-9)
-    np.testing.assert_allclose(a.impacts.time, a.t[hits], rtol=0, atol=1e-12)
+    agree(a.impacts.time, a.t[hits], atol=1e-12)
     # the free parabola of the step gives the penetration
     x, v = a.position[hits - 1, 0, 2] - 0.1, a.velocity[hits - 1, 0, 2]
     depth = -(x + v * 0.01 - 0.5 * G * 0.01**2)
     assert np.all(depth > -1e-15)  # what has arrived at the end of a step strikes there
-    np.testing.assert_allclose(jumps[hits - 1], G * depth, rtol=0, atol=1e-12)
+    agree(jumps[hits - 1], G * depth, atol=1e-12)
     assert energy[-1] > 0.01 * a.total_energy[0]
 
 
+@verifies('impact_location="{mode}"', "$e = 1$ keeps the energy", "invariant")
 @pytest.mark.parametrize("mode", ["locate", "work"])
 @pytest.mark.parametrize("method", ["rk4", "paper"])
 def test_work_and_locate_keep_the_energy(mode, method):
     # u_n is changed by the work of gravity along the return: e = 1 keeps the energy to round-off.
     a = carom.simulate(ball(1.0), 20.0, step=1e-2, impact_location=mode, method=method)
     assert len(a.impacts) >= 30
-    np.testing.assert_allclose(total(a), 1.0, rtol=0, atol=1e-12)
+    agree(total(a), 1.0, atol=1e-12)
 
 
 def test_locate_is_exact_and_the_others_of_order_one():

@@ -5,6 +5,7 @@ import pytest
 
 import carom
 from simulate.scenes import G, ball, event_times, on_plane
+from verified import agree, verifies
 
 OPEN, SLIP, STICK = 0, 1, 2
 
@@ -20,6 +21,9 @@ def down(angle):
     return np.array([np.cos(angle), 0, -np.sin(angle)])
 
 
+@verifies(
+    "simulate", r"slides until $t = 2 v_0/7\mu g$, then rolls with $\tfrac57 v_0$", "closed form"
+)
 @pytest.mark.few(3)
 @pytest.mark.parametrize("method", ["rk4", "paper"])
 @pytest.mark.parametrize("step", [0.1, 0.01, 1e-3])
@@ -30,26 +34,26 @@ def test_slides_then_rolls(method, step):
     t_roll, x_roll = 2 * v0 / (7 * mu * G), 12 * v0**2 / (49 * mu * G)
     a = carom.simulate(ball(0.5, mu, height=0, velocity=(v0, 0, 0)), 2.0, step=step, method=method)
     (sticks,) = event_times(a, "sticks")
-    assert sticks == pytest.approx(1.019367991845056, abs=1e-6)
-    assert sticks == pytest.approx(t_roll, abs=1e-12)
+    agree(sticks, 1.019367991845056, atol=1e-6)
+    agree(sticks, t_roll, atol=1e-12)
     x, _, v, w = a.evaluate(sticks)
-    assert x[0, 0] == pytest.approx(6.116207951070336, abs=1e-6)
-    assert x_roll == pytest.approx(6.116207951070336, abs=1e-12)
-    np.testing.assert_allclose(v[0], (5, 0, 0), rtol=0, atol=1e-9)
-    np.testing.assert_allclose(w[0], (0, 50, 0), rtol=0, atol=1e-8)
+    agree(x[0, 0], 6.116207951070336, atol=1e-6)
+    agree(x_roll, 6.116207951070336, atol=1e-12)
+    agree(v[0], (5, 0, 0), atol=1e-9)
+    agree(w[0], (0, 50, 0), atol=1e-8)
     late = a.t > sticks
-    np.testing.assert_allclose(a.velocity[late, 0], [[5, 0, 0]] * late.sum(), rtol=0, atol=1e-9)
-    np.testing.assert_allclose(a.position[-1, 0], (6.116207951070336 + 5 * (2 - t_roll), 0, 0.1))
+    agree(a.velocity[late, 0], [[5, 0, 0]] * late.sum(), atol=1e-9)
+    agree(a.position[-1, 0], (6.116207951070336 + 5 * (2 - t_roll), 0, 0.1), rtol=1e-7)
     np.testing.assert_array_equal(a.contact_mode[late, 0], STICK)
     np.testing.assert_array_equal(a.contact_mode[a.t < sticks, 0], SLIP)
     # forces: (m g, mu m g against the slip) while sliding, no friction while rolling
     slide = a.contact_force[a.t < sticks, 0]
-    np.testing.assert_allclose(slide[:, 0], G, rtol=1e-12)
-    np.testing.assert_allclose(np.hypot(slide[:, 1], slide[:, 2]), mu * G, rtol=1e-12)
-    assert np.max(np.abs(a.contact_force[late, 0, 1:])) < 1e-9
+    agree(slide[:, 0], G, rtol=1e-12)
+    agree(np.hypot(slide[:, 1], slide[:, 2]), mu * G, rtol=1e-12)
+    agree(a.contact_force[late, 0, 1:], 0.0, atol=1e-9)
     # friction takes m v0^2/2 - m (5/7 v0)^2/2 * 7/5 = m v0^2/7
-    assert a.ledger.friction[-1] == pytest.approx(-(v0**2) / 7, rel=1e-9)
-    np.testing.assert_allclose(a.ledger.residual, 0, rtol=0, atol=1e-10 * a.kinetic_energy[0])
+    agree(a.ledger.friction[-1], -(v0**2) / 7, rtol=1e-9)
+    agree(a.ledger.residual, 0, atol=1e-10 * a.kinetic_energy[0])
 
 
 def test_slides_across_with_spin():
@@ -67,6 +71,9 @@ def test_slides_across_with_spin():
     np.testing.assert_allclose(a.position[-1, 0, :2], x[:2], rtol=0, atol=1e-9)
 
 
+@verifies(
+    "Sphere", r"slope: $\tfrac57 g \sin\alpha$, or $g (\sin\alpha - \mu\cos\alpha)$", "closed form"
+)
 @pytest.mark.few(5)
 @pytest.mark.parametrize("angle", [0.1, 0.4, 1.0])
 @pytest.mark.parametrize("part", [0.0, 0.5, 0.9, 1.1, 3.0])
@@ -80,15 +87,13 @@ def test_ball_on_an_incline(angle, part):
     friction = 2 / 7 * np.sin(angle) if rolls else mu * np.cos(angle)
     t = a.t[:, None]
     start = a.position[0, 0]
-    np.testing.assert_allclose(
-        a.position[:, 0], start + 0.5 * pull * t**2 * down(angle), rtol=0, atol=1e-12
-    )
-    np.testing.assert_allclose(a.velocity[:, 0], pull * t * down(angle), rtol=0, atol=1e-12)
+    agree(a.position[:, 0], start + 0.5 * pull * t**2 * down(angle), atol=1e-12)
+    agree(a.velocity[:, 0], pull * t * down(angle), atol=1e-12)
     spin = 2.5 * friction * G * a.t / 0.1
-    np.testing.assert_allclose(a.angular_velocity[:, 0, 1], spin, rtol=0, atol=1e-10)
-    np.testing.assert_allclose(a.contact_force[:, 0, 0], 2 * G * np.cos(angle), rtol=1e-12)
+    agree(a.angular_velocity[:, 0, 1], spin, atol=1e-10)
+    agree(a.contact_force[:, 0, 0], 2 * G * np.cos(angle), rtol=1e-12)
     T = np.hypot(a.contact_force[:, 0, 1], a.contact_force[:, 0, 2])
-    np.testing.assert_allclose(T, 2 * G * friction, rtol=1e-10, atol=1e-12)
+    agree(T, 2 * G * friction, rtol=1e-10, atol=1e-12)
     np.testing.assert_array_equal(a.contact_mode, STICK if rolls else SLIP)
     assert np.max(T - mu * a.contact_force[:, 0, 0]) <= 1e-11
 

@@ -9,6 +9,7 @@ from scipy.interpolate import PchipInterpolator
 
 import carom
 from carom import Restitution
+from verified import agree, verifies
 
 G = 9.81
 LAWS = {
@@ -38,22 +39,28 @@ def speeds(law, first, count):
     return np.array(found)
 
 
+@verifies("Restitution.power", "$e = e_0 (v/v_0)^{-1/4}$, at most its maximum", "closed form")
+@verifies(
+    "Restitution.viscoelastic", r"$e = 1 - x + \tfrac35 x^2$, $x = c\,v^{1/5}$", "closed form"
+)
+@verifies("Restitution.table", "monotone cubics", "other program: SciPy's PchipInterpolator")
 def test_values_by_their_formulas():
     v = np.array([1e-9, 1e-3, 0.3, 1.0, 2.7, 40.0])
-    assert LAWS["power"](v) == pytest.approx(np.minimum(0.9, 0.5 * (v / 2.0) ** -0.25), rel=1e-14)
-    assert LAWS["rising"](v) == pytest.approx(np.minimum(1.0, 0.7 * v**0.2), rel=1e-14)
+    agree(LAWS["power"](v), np.minimum(0.9, 0.5 * (v / 2.0) ** -0.25), rtol=1e-14)
+    agree(LAWS["rising"](v), np.minimum(1.0, 0.7 * v**0.2), rtol=1e-14)
     x = np.minimum(0.2 * v**0.2, 5 / 6)
-    assert LAWS["viscoelastic"](v) == pytest.approx(1 - x + 0.6 * x**2, rel=1e-14)
-    assert Restitution.viscoelastic(2.0)(40.0) == pytest.approx(7 / 12, rel=1e-14)
+    agree(LAWS["viscoelastic"](v), 1 - x + 0.6 * x**2, rtol=1e-14)
+    agree(Restitution.viscoelastic(2.0)(40.0), 7 / 12, rtol=1e-14)
     table = PchipInterpolator([0.2, 1.0, 3.0, 5.0], [0.95, 0.8, 0.6, 0.5])
-    assert LAWS["table"](v) == pytest.approx(table(np.clip(v, 0.2, 5.0)), rel=1e-14)
+    agree(LAWS["table"](v), table(np.clip(v, 0.2, 5.0)), rtol=1e-14)
     for law in LAWS.values():
         everywhere = law(np.append(0.0, np.logspace(-300, 300, 999)))
         assert np.all((everywhere >= 0) & (everywhere <= 1))
         difference = (law(1.7 + 1e-5) - law(1.7 - 1e-5)) / 2e-5
-        assert law.slope(1.7) == pytest.approx(difference, rel=1e-8, abs=1e-10)
+        agree(law.slope(1.7), difference, rtol=1e-8, atol=1e-10)
 
 
+@verifies("Restitution.fit", "a power law as a function, and its bounces", "closed form")
 def test_a_function_is_a_law():
     """The power law as a function: a fit to 1e-10, with its kink; and the same bounces."""
 
@@ -62,24 +69,23 @@ def test_a_function_is_a_law():
 
     law = Restitution.fit(power)
     v = np.logspace(-6, 4, 3000)
-    assert (
-        np.max(np.abs(law(v) - LAWS["power"](v))) < 2e-10
-    )  # twice the stated accuracy, as a bound
+    agree(law(v), LAWS["power"](v), atol=2e-10)  # twice the stated accuracy, as a bound
     assert pickle.loads(pickle.dumps(law)) == law
     assert len({law, law, Restitution.fit(power, speeds=(0.1, 3))}) == 2
     times = [
         carom.simulate(ball(one), 3.0, save_at=0.1).impacts.time for one in (power, LAWS["power"])
     ]
     # an error of e of 1e-10 of its value moves the k-th impact by 2 k v / g times that
-    assert np.max(np.abs(times[0] - times[1])) < 1e-8
+    agree(times[0], times[1], atol=1e-8)
     short = Restitution.fit(lambda v: 1.0 - 0.1 * v, speeds=(1.0, 5.0))  # below 0 from 10 m/s on
-    np.testing.assert_allclose(short([0.0, 1.0, 3.0, 99.0]), [0.9, 0.9, 0.7, 0.5], rtol=1e-12)
+    agree(short([0.0, 1.0, 3.0, 99.0]), [0.9, 0.9, 0.7, 0.5], rtol=1e-12)
     assert short.fastest == 5.0
     assert law.elastic == 0.0
     slow = Restitution.fit(lambda v: min(1.0, v**-0.25), speeds=(0.0, 3.0))
-    assert slow.elastic == pytest.approx(1.0, rel=1e-6)
+    agree(slow.elastic, 1.0, rtol=1e-6)
 
 
+@verifies("Restitution.power", r"$v_{k+1} = e(v_k)\,v_k$", "closed form")
 @pytest.mark.few(4)
 @pytest.mark.parametrize(
     "impact_law", [pytest.param("newton", marks=pytest.mark.plain), "poisson", "stronge"]
@@ -92,11 +98,11 @@ def test_bounces_follow_the_recurrence(name, impact_law):
     v = speeds(law, np.sqrt(2 * G), len(impacts))
     assert len(impacts) >= 2
     # located to the round-off of the height; speeds add up over the bounces
-    assert -impacts.relative_velocity_before[:, 0] == pytest.approx(v, rel=1e-11)
-    assert impacts.relative_velocity_after[:, 0] == pytest.approx(law(v) * v, rel=1e-11)
-    assert impacts.restitution == pytest.approx(law(v), rel=1e-11)
+    agree(-impacts.relative_velocity_before[:, 0], v, rtol=1e-11)
+    agree(impacts.relative_velocity_after[:, 0], law(v) * v, rtol=1e-11)
+    agree(impacts.restitution, law(v), rtol=1e-11)
     times = np.sqrt(2 / G) + 2 / G * np.cumsum(np.append(0.0, v[1:]))
-    assert impacts.time == pytest.approx(times, rel=1e-11)
+    agree(impacts.time, times, rtol=1e-11)
     assert np.all(impacts.energy_change <= 0)
 
 

@@ -4,6 +4,7 @@ import numpy as np
 import pytest
 
 import carom
+from verified import agree, verifies
 
 G = 9.81
 WAYS = pytest.mark.parametrize("how", [{}, {"step": 0.01}], ids=["tolerances", "step"])
@@ -92,6 +93,9 @@ def test_more_steps_than_there_is_room_for_at_first():
         assert abs(solution.position[:, 1, 0] - 0.5 * solution.t).max() < 1e-10
 
 
+@verifies(
+    "Run", r"cart under control: $x \mathrel{+}= v T + F T^2/2m$, work $F\,\Delta x$", "closed form"
+)
 @WAYS
 def test_a_controller(how):
     """A force that is constant in each period: x += v T + F T^2/(2 m), v += F T/m, to round-off.
@@ -107,12 +111,12 @@ def test_a_controller(how):
         force = 8 * (1 - x) - 6 * v
         way = v * T + 0.5 * force / m * T * T
         x, v, work = x + way, v + force / m * T, work + force * way
-        assert abs(run.state["cart"].position[0] - x) < 1e-13
-        assert abs(run.state["cart"].velocity[0] - v) < 1e-13
+        agree(run.state["cart"].position[0], x, atol=1e-13)
+        agree(run.state["cart"].velocity[0], v, atol=1e-13)
     solution = run.solution
     assert solution.status is carom.Status.SUCCESS
     assert solution.warnings == ()
-    assert abs(solution.ledger.loads[-1] - work) < 1e-12
+    agree(solution.ledger.loads[-1], work, atol=1e-12)
     assert abs(solution.ledger.residual).max() < 1e-13
     assert solution.t.shape == (501,)
 

@@ -5,6 +5,7 @@ import pytest
 
 import carom
 from simulate.scenes import G, ball, matrix, on_plane, product, turn
+from verified import agree, verifies
 
 SPIN = np.array([20.0, 14.0, -9.0])
 ATTITUDE = turn((1, 2, 0.5), 0.7)
@@ -85,6 +86,7 @@ def test_tilted_plane_with_tilted_gravity(base, axis):
     same(base, a, lambda x: R @ x, lambda M: R @ M, lambda v: R @ v, lambda w: R @ w)
 
 
+@verifies("simulate", "the same motion in other units", "invariant")
 @pytest.mark.parametrize(("length", "mass", "time"), [(1e-3, 1, 1), (1, 1e6, 1), (8, 1e-3, 0.25)])
 def test_units(length, mass, time):
     # x -> L x, m -> M m, t -> T t; g -> L/T^2 g: the same motion in other units.
@@ -100,11 +102,11 @@ def test_units(length, mass, time):
         return carom.simulate(scene, 0.2 * T, step=5e-4 * T)
 
     a, b = scaled(1, 1, 1), scaled(length, mass, time)
-    np.testing.assert_allclose(b.impacts.time[:2], a.impacts.time[:2] * time, rtol=1e-10)
+    agree(b.impacts.time[:2], a.impacts.time[:2] * time, rtol=1e-10)
     P = a.impacts.impulse[:2] * mass * length / time
-    np.testing.assert_allclose(b.impacts.impulse[:2], P, rtol=1e-7, atol=1e-9 * np.abs(P).max())
+    agree(b.impacts.impulse[:2], P, rtol=1e-7, atol=1e-9 * np.abs(P).max())
     energy = a.impacts.energy_change[:2] * mass * (length / time) ** 2
-    np.testing.assert_allclose(b.impacts.energy_change[:2], energy, rtol=1e-7)
+    agree(b.impacts.energy_change[:2], energy, rtol=1e-7)
 
 
 @pytest.mark.parametrize("scale", [1e-6, 1e-3, 1e3, 1e6])

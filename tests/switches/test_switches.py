@@ -6,6 +6,7 @@ import pytest
 import carom
 from carom import GROUND, constraints, forces, joints
 from carom.status import SimulationError
+from verified import agree, verifies
 
 G = 9.81
 HOW = {"tolerances": {}, "tight": {"rtol": 1e-10}, "step": {"step": 0.01}}
@@ -25,6 +26,7 @@ def moment(k=0):
     return 1.0 + 0.4 * 0.05**2
 
 
+@verifies("switch", r"$\omega^2 = 2 m g l/I$, then a parabola", "closed form")
 @pytest.mark.parametrize("how", HOW.values(), ids=HOW)
 def test_released_at_the_bottom_it_flies_a_parabola(how):
     scene = pendulum()
@@ -34,8 +36,8 @@ def test_released_at_the_bottom_it_flies_a_parabola(how):
     w = np.sqrt(2.0 * G / moment())
     (t,), tolerance = solution.switches.time, 1e-9 if "step" not in how else 1e-6
     end = np.array([w * (1 - t), 0, -1 - 0.5 * G * (1 - t) ** 2])
-    np.testing.assert_allclose(solution["bob"].velocity[-1], (w, 0, -G * (1 - t)), atol=tolerance)
-    np.testing.assert_allclose(solution["bob"].position[-1], end, atol=tolerance)
+    agree(solution["bob"].velocity[-1], (w, 0, -G * (1 - t)), atol=tolerance)
+    agree(solution["bob"].position[-1], end, atol=tolerance)
     assert np.all(solution["hinge"].force[solution.t > t] == 0.0)
     assert np.all(np.isnan(solution["hinge"].coordinate[solution.t > t]))
     assert abs(solution.ledger.residual).max() < tolerance
@@ -57,6 +59,11 @@ def test_a_release_is_the_same_as_two_runs():
         np.testing.assert_allclose(whole.evaluate(t)[0], part, atol=1e-9)
 
 
+@verifies(
+    "add_joint(breaks_at=)",
+    r"breaks where $\lvert R\rvert$ of a pendulum is its limit",
+    "closed form",
+)
 @pytest.mark.parametrize("how", HOW.values(), ids=HOW)
 def test_a_pin_breaks_at_its_force(how):
     solution = carom.simulate(pendulum(breaks_at=20.0), 1.0, **how)
@@ -66,8 +73,8 @@ def test_a_pin_breaks_at_its_force(how):
     k, ratio = int(np.flatnonzero(solution.t == t)[0]), 1.0 / moment()
     a = -float(solution["hinge"].coordinate[k])
     along, across = G * np.sin(a) * (1.0 + 2.0 * ratio), G * np.cos(a) * (1.0 - ratio)
-    assert np.hypot(along, across) == pytest.approx(20.0, rel=1e-9 if "step" not in how else 1e-5)
-    assert np.linalg.norm(solution["hinge"].force[k]) == pytest.approx(20.0, rel=1e-12)
+    agree(np.hypot(along, across), 20.0, rtol=1e-9 if "step" not in how else 1e-5)
+    agree(np.linalg.norm(solution["hinge"].force[k]), 20.0, rtol=1e-12)
 
 
 def test_a_load_that_peaks_within_a_step_breaks():
@@ -202,6 +209,7 @@ def test_a_clutch_turns_half_the_reduced_inertia_into_heat():
     assert solution["clutch"].torque[0] == 0.0
 
 
+@verifies("switch", r"a spring that is cut: $v = -A\omega \sin\omega t$ stays", "closed form")
 def test_a_spring_that_is_cut_takes_its_energy_with_it():
     scene = carom.Scene(gravity=(0, 0, 0))
     scene.add_body(carom.Sphere(0.1), mass=1.0, name="a")
@@ -210,8 +218,8 @@ def test_a_spring_that_is_cut_takes_its_energy_with_it():
     scene.switch("spring", at=0.1)
     solution = carom.simulate(scene, 0.5)
     # x = -.5 + .5 cos(10 t) from the rest length
-    assert solution["a"].velocity[-1, 0] == pytest.approx(-5.0 * np.sin(1.0), rel=1e-8)
-    assert solution.ledger.loads[-1] == pytest.approx(-12.5 * np.cos(1.0) ** 2, rel=1e-8)
+    agree(solution["a"].velocity[-1, 0], -5.0 * np.sin(1.0), rtol=1e-8)
+    agree(solution.ledger.loads[-1], -12.5 * np.cos(1.0) ** 2, rtol=1e-8)
     assert abs(solution.ledger.residual).max() < 1e-9
 
 

@@ -5,6 +5,7 @@ import pytest
 from multiple_cases import strike_row
 
 from carom.impact.multiple.api import resolve_impacts
+from verified import agree, verifies
 
 # e, velocities after of n unit masses, ball 1 at v = 1, equal linear stiffness.
 LINEAR = [
@@ -35,6 +36,10 @@ def test_row_of_equal_springs(e, after):
         assert impact.energy_change == pytest.approx(0, abs=1e-11)
 
 
+@verifies(
+    'multiple="simultaneous"', r"three balls on two springs: modes 1 and $\sqrt3$", "closed form"
+)
+@verifies("resolve_impacts", r"three balls on two springs: modes 1 and $\sqrt3$", "closed form")
 def test_two_springs_in_closed_form():
     # n = 3, e = 1 before the first opening: depths d'' = -K d with K = [[2, -1], [-1, 2]], modes 1 and
     # sqrt(3): d = sin(t)/2 (1, 1) + sin(sqrt3 t)/(2 sqrt3) (1, -1). Contact 1 turns first, contact 2 last, both
@@ -57,7 +62,7 @@ def test_two_springs_in_closed_form():
     v1 = (1 + 2 * first + rate2) / 3
     v2, v3 = v1 - first - impulse, v1 - first - rate2 + impulse
     v, _ = strike_row([1, 0, 0], 1.0, rtol=1e-11)
-    np.testing.assert_allclose(v, (v1, v2, v3), rtol=0, atol=1e-10)
+    agree(v, (v1, v2, v3), atol=1e-10)
 
 
 @pytest.mark.parametrize("ratio", RATIO)
@@ -108,11 +113,12 @@ SEQUENTIAL = [
 ]
 
 
+@verifies('multiple="sequential"', r"sums of powers of $(1 \pm e)/2$", "closed form")
 @pytest.mark.parametrize(("after", "blows"), SEQUENTIAL)
 def test_sequential_with_loss(after, blows):
     # Sums of powers of 1/2: (1 + e)/2 = 3/4 goes on at each blow, 1/4 stays.
     v, impact = strike_row([1, *np.zeros(len(after) - 1)], 0.5, multiple="sequential")
-    np.testing.assert_allclose(v, after, rtol=0, atol=1e-12)
+    agree(v, after, atol=1e-12)
     assert impact.events == blows
 
 
@@ -145,6 +151,7 @@ BREAK = [
 ]
 
 
+@verifies("resolve_impacts", "break of three balls", "closed form")
 @pytest.mark.parametrize(("cue", "e", "after"), BREAK)
 def test_break(cue, e, after):
-    np.testing.assert_allclose(break_shot(cue, e), after, rtol=0, atol=1.5e-10)
+    agree(break_shot(cue, e), after, atol=1.5e-10)
