@@ -186,6 +186,13 @@ def run(folder):
             dict(inverse_mass=W, velocity=[(-1.0, 1.0, 0.0)], friction=0.1, restitution=0.5, law="newton",
                  multiple="simultaneous", stiffness=[1.0], exponent=1.0, rtol=1e-8, tangential_restitution=0.5),
         ),
+        "CornerImpact.force": lambda: (
+            carom.resolve_impacts(W, [(-1.0, 1.0, 0.0)], 0.1, 0.5).force, dict(stiffness=carom.Stiffness(1e6)),
+        ),
+        "impact.ImpactForces.evaluate": lambda: (
+            carom.resolve_impacts(W, [(-1.0, 1.0, 0.0)], 0.1, 0.5).force(carom.Stiffness(1e6)).evaluate,
+            dict(t=0.0),
+        ),
         "solve_contacts": lambda: (
             carom.solve_contacts,
             dict(inverse_mass=W, velocity=(-1.0, 1.0, 0.0), friction=0.1, kind="sliding",

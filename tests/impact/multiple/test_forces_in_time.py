@@ -1,0 +1,157 @@
+"""Forces of several contacts in time: against springs integrated in time, one contact, momentum and cones."""
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+import carom
+from carom import Hertz, Stiffness
+
+STEEL, NU, DENSITY = 203e9, 0.3, 7780.0
+
+
+def row_of_balls(radii):
+    """Return W, velocities and radii of contacts of a row, of which the first ball comes in at 1 m/s."""
+    mass = DENSITY * 4 / 3 * np.pi * radii**3
+    n = len(radii)
+    G = np.eye(n)[1:] - np.eye(n)[:-1]
+    W = np.kron(G @ np.diag(1 / mass) @ G.T, np.diag([1.0, 0.0, 0.0]))
+    u = np.zeros((n - 1, 3))
+    u[0, 0] = -1.0
+    return W, u, radii[:-1] * radii[1:] / (radii[:-1] + radii[1:]), mass
+
+
+@pytest.mark.parametrize("radii", [np.full(4, 0.01), 0.01 * 0.8 ** np.arange(5)])
+def test_a_row_of_balls_is_that_of_springs_integrated_in_time(radii):
+    W, u, R, mass = row_of_balls(radii)
+    force = carom.resolve_impacts(
+        W, u, 0, 1, stiffness=[Hertz(STEEL, NU, radius=r) for r in R]
+    ).force()
+    n, k = len(radii), 4 / 3 * STEEL / (1 - NU**2) / 2 * np.sqrt(R)
+
+    def springs(x):
+        return k * np.maximum(x[: n - 1] - x[1:n], 0.0) ** 1.5
+
+    def rates(t, y):
+        F = springs(y)
+        return np.concatenate([y[n:], (np.append(0, F) - np.append(F, 0)) / mass])
+
+    begin = np.zeros(2 * n)
+    begin[n] = 1.0
+    t = np.linspace(0, force.duration, 400)
+    run = solve_ivp(
+        rates, (0, t[-1]), begin, method="DOP853", rtol=1e-12, atol=1e-19, max_step=1e-6, t_eval=t
+    )
+    there = np.array([springs(x) for x in run.y.T])
+    np.testing.assert_allclose(force.evaluate(t), there, rtol=0, atol=3e-5 * there.max())
+    assert force.peak_force == pytest.approx(force.normal_force.max(axis=0))
+    assert np.all(np.diff(force.contact_time[:, 0]) > 0.0)  # the wave
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5])
+@pytest.mark.parametrize("e", [1.0, 0.5])
+def test_one_contact_of_several_is_one_contact(exponent, e):
+    """Numbers of a spring integrated in time, and the force of `resolve_impact`."""
+    W = np.array([[2.5, -1.5, 0], [-1.5, 2.5, 0], [0, 0, 1]])
+    stiffness = Stiffness(1e6, exponent)
+    alone = carom.resolve_impact(W, (-1, 2, 0), 0.2, e, stiffness=stiffness)
+    one = carom.resolve_impacts(W, [(-1, 2, 0)], 0.2, e, stiffness=stiffness).force()
+    assert one.duration == pytest.approx(alone.duration, rel=1e-8)
+    assert one.peak_force[0] == pytest.approx(alone.peak_force, rel=1e-7)
+    force = alone.force()
+    seen = one.evaluate(force.t)[:, 0]
+    np.testing.assert_allclose(seen, force.normal_force, rtol=0, atol=1e-6 * alone.peak_force)
+
+
+def box_on_floor(rng):
+    """Return W and velocities of the four lower corners of a box."""
+    corners = np.array([(x, y, -0.5) for x in (-0.5, 0.5) for y in (-0.5, 0.5)])
+    inertia = np.array([1 / 6] * 3)
+    G = []
+    for r in corners:
+        for a in ((0, 0, 1), (1, 0, 0), (0, 1, 0)):
+            G.append(np.concatenate([a, np.cross(r, a)]))
+    G = np.array(G)
+    W = G @ np.diag(1 / np.concatenate([[1, 1, 1], inertia])) @ G.T
+    v = np.concatenate([rng.uniform(-0.5, 0.5, 2), [-1.0], rng.uniform(-0.5, 0.5, 3)])
+    return W, (G @ v).reshape(4, 3)
+
+
+@pytest.mark.parametrize("law", ["newton", "poisson", "stronge"])
+@pytest.mark.parametrize("exponent", [1.0, 1.5])
+def test_corners_with_friction_keep_momentum_and_their_cones(law, exponent):
+    rng = np.random.default_rng(5)
+    for _ in range(6):
+        W, u = box_on_floor(rng)
+        stiffness = [Stiffness(k, exponent) for k in rng.uniform(1e6, 3e6, 4)]
+        impact = carom.resolve_impacts(W, u, 0.3, 0.6, law, stiffness=stiffness)
+        force = impact.force()
+        scale = impact.impulse[:, 0].max()
+        # four corners are redundant: the shares of friction are not determined, but what they do
+        np.testing.assert_allclose(
+            force.impulse[-1, :, 0], impact.impulse[:, 0], rtol=0, atol=2e-5 * scale
+        )
+        np.testing.assert_allclose(force.velocity[-1], impact.velocity_after, rtol=0, atol=2e-5)
+        np.testing.assert_allclose(
+            force.velocity.reshape(-1, 12),
+            u.reshape(12) + force.impulse.reshape(-1, 12) @ W,
+            rtol=0,
+            atol=1e-12,
+        )
+        times = np.linspace(0, force.duration, 20001)
+        taken = np.trapezoid(force.evaluate(times), times, axis=0)
+        np.testing.assert_allclose(taken, impact.impulse[:, 0], rtol=0, atol=2e-5 * scale)
+        friction = np.linalg.norm(force.friction_force, axis=2)
+        assert np.all(
+            friction <= 0.3 * force.normal_force * (1 + 1e-8) + 1e-9 * force.peak_force.max()
+        )
+        k = np.array([one.k for one in stiffness])
+        closing = force.normal_force[:3] > 0.0  # on the curve of loading
+        np.testing.assert_allclose(
+            force.normal_force[:3][closing],
+            (k * np.maximum(force.depth[:3], 0.0) ** exponent)[closing],
+            rtol=1e-9,
+        )
+
+
+def test_stiffnesses_in_newton_are_their_ratios():
+    W, u, *_ = row_of_balls(np.full(3, 0.01))
+    stated = carom.resolve_impacts(W, u, 0, 1, stiffness=[Stiffness(2e6), Stiffness(1e6)])
+    relative = carom.resolve_impacts(W, u, 0, 1, stiffness=[2.0, 1.0])
+    np.testing.assert_allclose(stated.impulse, relative.impulse, rtol=1e-12)
+    np.testing.assert_allclose(
+        relative.force([Stiffness(2e6), Stiffness(1e6)]).peak_force, stated.force().peak_force
+    )
+    slow = relative.force([Stiffness(2e4), Stiffness(1e4)])
+    assert slow.duration == pytest.approx(10 * stated.force().duration)
+
+
+def test_what_has_no_course_is_refused():
+    W, u, *_ = row_of_balls(np.full(3, 0.01))
+    both = Stiffness(1e6)
+    with pytest.raises(ValueError, match="one exponent"):
+        carom.resolve_impacts(W, u, 0, 1, stiffness=[Stiffness(1e6), Stiffness(1e6, 1.5)])
+    with pytest.raises(ValueError, match="exponent must be that of stiffness"):
+        carom.resolve_impacts(W, u, 0, 1, stiffness=both, exponent=1.5)
+    with pytest.raises(ValueError, match="numbers, or one Stiffness or Hertz, or 2"):
+        carom.resolve_impacts(W, u, 0, 1, stiffness=[both, 1.0])
+    with pytest.raises(ValueError, match="radius"):
+        carom.resolve_impacts(W, u, 0, 1, stiffness=Hertz(1e9))
+    with pytest.raises(TypeError, match="stiffness must be a Stiffness"):
+        carom.resolve_impacts(W, u, 0, 1).force()
+    with pytest.raises(ValueError, match="ratios"):
+        carom.resolve_impacts(W, u, 0, 1).force([Stiffness(1e6), Stiffness(2e6)])
+    for how in (dict(multiple="sequential"), dict(multiple="newton"), dict(law="moreau")):
+        with pytest.raises(ValueError, match="course in time"):
+            carom.resolve_impacts(W, u, 0, 1, **how).force(both)
+    with pytest.raises(ValueError, match="course in time"):
+        carom.resolve_impacts(W, u, 0, 0).force(both)
+
+
+def test_a_plot_has_all_forces():
+    W, u, *_ = row_of_balls(np.full(3, 0.01))
+    impact = carom.resolve_impacts(W, u, 0, 1, stiffness=Stiffness(1e6))
+    upper, lower = carom.plots.impact_force(impact)
+    assert len(upper.lines) == 3  # and the axis
+    assert len(lower.lines) == 2
+    assert upper.lines[0].get_xdata()[-1] > 0.0
