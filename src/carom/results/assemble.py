@@ -12,7 +12,7 @@ from carom.geometry import quaternion
 from carom.impact.layout import AT_END, WEDGED
 from carom.model import records as r
 from carom.model.laws import law_of
-from carom.results import stiff_forces
+from carom.results import stiff_forces, waves
 from carom.results.accuracy import sentences
 from carom.results.beyond_bounds import beyond_bounds
 from carom.results.costs import busiest
@@ -74,6 +74,7 @@ def assemble(run, status: Status) -> dict:
         "warnings": (
             *sentences(run.watch[0], run.how.finer, run.scene, run.pairs),
             *remarks(impact, event, run),
+            *waves.remarks(impact, run),
             *stiff_forces.remarks(run, series, state),
             *beyond_bounds(run, impact, rec.touch, series["t"]),
             *tipped_strands(run, rec.state, series["t"]),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -93,7 +94,7 @@ def forces_in_time(stated: dict[str, Any], solved, stiffness: tuple[np.ndarray, 
     solved : CornerImpact
     stiffness : [N/m^p] of each contact, and the exponent p
     """
-    from carom.impact.multiple.trace import COLUMNS, course
+    from carom.impact.multiple.trace import CONTACT_COLUMNS, course
 
     W, u, laws, settings = (stated[name] for name in ("W", "velocity", "laws", "settings"))
     k, (stiff, p) = len(u), stiffness
@@ -111,14 +112,14 @@ def forces_in_time(stated: dict[str, Any], solved, stiffness: tuple[np.ndarray, 
     took, gave = -solved.compression_work, solved.restitution_work
     e = np.sqrt(np.divide(gave, took, out=np.zeros(k), where=took > 0.0))
     rows = course(W, u, (laws, laws.table["friction"].copy()), e, stiff, settings)
-    off = np.inf
+    off = math.inf
     if rows is not None:
-        last = rows[-1, 1:].reshape(k, COLUMNS)
+        last = rows[-1, 1:].reshape(k, CONTACT_COLUMNS)
         off = max(
             np.abs(solved.impulse - last[:, 7:10])[:, 0].max() / solved.impulse[:, 0].max(),
             np.abs(solved.velocity_after - last[:, 4:7]).max() / np.abs(u).max(),
         )
-    if not off <= COURSE_ERROR:
+    if rows is None or not off <= COURSE_ERROR:
         raise ValueError(
             "the course of the impact could not be followed once more, so its forces are not known"
         )
@@ -126,10 +127,10 @@ def forces_in_time(stated: dict[str, Any], solved, stiffness: tuple[np.ndarray, 
 
 
 def _made(rows: np.ndarray, k: int) -> ImpactForces:
-    from carom.impact.multiple.trace import COLUMNS
+    from carom.impact.multiple.trace import CONTACT_COLUMNS
 
     keep = np.append(np.diff(rows[:, 0]) > 0.0, True)  # of several states at one time, the last
-    t, state = rows[keep, 0], rows[keep, 1:].reshape(-1, k, COLUMNS)
+    t, state = rows[keep, 0], rows[keep, 1:].reshape(-1, k, CONTACT_COLUMNS)
     N = state[..., 0]
     spans = np.full((k, 2), np.nan)
     for i in range(k):

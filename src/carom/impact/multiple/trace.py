@@ -28,8 +28,8 @@ from carom.impact.thresholds import (
 )
 from carom.model.laws import with_slip
 
-COLUMNS = 10  # of a contact: N, T1, T2, depth, velocity (3), impulse (3)
-FEW_ROWS, MOST_ROWS = 2**11, 2**17
+CONTACT_COLUMNS = 10  # of a contact: N, T1, T2, depth, velocity (3), impulse (3)
+FEW_TRACE_ROWS, MOST_TRACE_ROWS = 2**11, 2**17
 FULL = -1
 
 
@@ -78,7 +78,7 @@ def write_state(k, work, p, t, row):
     row[0] = t
     now = work.now
     for i in range(k):
-        n = 1 + COLUMNS * i
+        n = 1 + CONTACT_COLUMNS * i
         row[n], row[n + 3] = law.force(work.contact[i], now.depth[i], p), now.depth[i]
         for r in range(3):
             row[n + 4 + r], row[n + 7 + r] = now.velocity[3 * i + r], now.impulse[3 * i + r]
@@ -92,7 +92,7 @@ def write_friction(k, work, stepped, last, row):
     """
     force = work.stages.force[5]
     for i in range(k):
-        n = 1 + COLUMNS * i
+        n = 1 + CONTACT_COLUMNS * i
         N = force[3 * i] if stepped else last[n]
         for r in range(1, 3):
             T = force[3 * i + r] if stepped else last[n + r]
@@ -122,9 +122,9 @@ def course(W, u, friction, restitution, stiffness, settings: MultipleSettings) -
         max(LEAST_LAYER_RTOL, COURSE_SHARE * settings.rtol), p, settings.max_events, settings.max_steps,
         settings.max_rounds, bool(np.any(by_slip)), False, speed, laws,
     )  # fmt: skip
-    size = FEW_ROWS
-    while size <= MOST_ROWS:
-        work, rows = new_multiple_workspace(k).work, np.zeros((size, 1 + COLUMNS * k))
+    size = FEW_TRACE_ROWS
+    while size <= MOST_TRACE_ROWS:
+        work, rows = new_multiple_workspace(k).work, np.zeros((size, 1 + CONTACT_COLUMNS * k))
         work.W[:], work.before[:] = W / mass, acting.reshape(-1) / speed
         contact = work.contact
         contact["mu"], contact["law"], contact["by_slip"] = mu, np.arange(k), by_slip

@@ -7,6 +7,7 @@ import numpy as np
 from carom.arguments import known
 from carom.impact import Impact, ImpactForce, ImpactForces
 from carom.impact.multiple.api import CornerImpact
+from carom.scene.stiffness import Stiffness
 from carom.visual.plots import figure
 from carom.visual.plots import style as looks
 
@@ -75,8 +76,9 @@ def impact_force(
         lower.set(
             ylabel=f"depth [{unit}]", xlabel=f"time [{short}]", xlim=(0, time * force.duration)
         )
-        for one in axes if isinstance(force, ImpactForce) else ():
-            one.axvline(time * force.compression_time, color=looks.GREY, lw=0.6, ls=":")
+        if isinstance(force, ImpactForce):
+            for one in axes:
+                one.axvline(time * force.compression_time, color=looks.GREY, lw=0.6, ls=":")
     return axes if only is None else axes[only]
 
 
@@ -105,7 +107,10 @@ def _force(solution, k, stiffness):
         return solution.force(stiffness)
     figure.need_bodies(solution, "impact_force")
     figure.impact(solution, k)
-    record = solution.impacts[int(k)]
-    return record.force(
-        stiffness_of(solution, int(record.contact)) if stiffness is None else stiffness
-    )
+    record, rows = solution.impacts[int(k)], solution._written.impact
+    if stiffness is None:
+        place = range(len(rows))[int(k)]
+        own = rows[place : place + 1]
+        stated = stiffness_of(solution, int(record.contact), own)
+        stiffness = None if stated is None else Stiffness(float(np.ravel(stated[0])[0]), stated[1])
+    return record.force(stiffness)
