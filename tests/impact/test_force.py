@@ -277,3 +277,43 @@ def test_a_run_says_where_waves_are_as_slow_as_the_impact():
     assert "'body'" in said
     wave = 4 * 0.22 * np.sqrt(0.03 / carom.Capsule(0.02, 0.4).volume / 2e9)
     assert f"{wave:.2g} s to pass" in said
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5])
+def test_a_stop_of_an_angle_has_a_torque(exponent, tmp_path):
+    """A rod that falls on a stop is a spring in its hinge: M = (k J)^(1/2) w, T = pi/2 (J/k)^(1/2) (1 + e)."""
+    scene = carom.Scene(gravity=(0, 0, 0))
+    rod = scene.add_body(
+        carom.Box(0.5, 0.02, 0.02), mass=2.0, position=(0.25, 0, 0), angular_velocity=(0, 3, 0),
+        velocity=(0, 0, -0.75), name="rod",
+    )  # fmt: skip
+    hinge = scene.add_joint(carom.joints.Revolute((0, 0, 0), (0, 1, 0)), carom.GROUND, rod)
+    stiffness = Stiffness(4e4, exponent)
+    scene.add_stop(hinge, upper=0.3, restitution=0.6, stiffness=stiffness, name="stop")
+    solution = carom.simulate(scene, 0.2)
+    hit = solution.impacts[0]
+    J = 2.0 / 12 * (0.5**2 + 0.02**2) + 2.0 * 0.25**2
+    expected = carom.resolve_impact(np.diag([1 / J, 0, 0]), (-3, 0, 0), 0, 0.6, stiffness=stiffness)
+    assert hit.peak_force == pytest.approx(expected.peak_force, rel=1e-9)
+    assert hit.duration == pytest.approx(expected.duration, rel=1e-9)
+    assert hit.force(stiffness).peak_force == pytest.approx(hit.peak_force, rel=1e-9)
+    if exponent == 1.0:
+        assert hit.peak_force == pytest.approx(np.sqrt(4e4 * J) * 3, rel=1e-9)
+        assert hit.duration == pytest.approx(np.pi / 2 * np.sqrt(J / 4e4) * 1.6, rel=1e-9)
+    with pytest.raises(TypeError, match="of a stop of an angle"):
+        hit.force(Hertz(1e9, radius=0.1))
+    solution.save(tmp_path / "run.nc")
+    again = carom.Solution.load(tmp_path / "run.nc")
+    assert again.scene["stop"].stiffness == stiffness
+    assert again.impacts.peak_force[0] == pytest.approx(hit.peak_force, rel=1e-12)
+    assert scene.copy().replace("stop", lower=None, stiffness=None) is not None
+
+
+def test_a_stop_of_a_slide_has_a_force():
+    scene = carom.Scene(gravity=(0, 0, 0))
+    ram = scene.add_body(carom.Box(0.1, 0.1, 0.1), mass=4.0, velocity=(2, 0, 0), name="ram")
+    way = scene.add_joint(carom.joints.Prismatic((1, 0, 0)), carom.GROUND, ram)
+    scene.add_stop(way, upper=0.1, restitution=1.0, stiffness=Stiffness(1e6))
+    hit = carom.simulate(scene, 0.1).impacts[0]
+    assert hit.peak_force == pytest.approx(2 * np.sqrt(4e6), rel=1e-9)
+    assert hit.duration == pytest.approx(np.pi * np.sqrt(4e-6), rel=1e-9)

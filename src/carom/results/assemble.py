@@ -173,7 +173,7 @@ def impact_table(solution) -> ImpactTable:
     e = _restitutions(rows, contacts["restitution"][c], arm, solution)
     mu = np.where(_not_one_mu(contacts, first)[place], np.nan, contacts["friction"][c])
     law = np.array(IMPACT_LAWS)[contacts["impact_law"][c]]
-    peak, duration = stiff_impacts(solution, rows, mu, e, law)
+    peak, duration = stiff_impacts(solution, rows, arm, (mu, e, law))
     return ImpactTable(
         relative_velocity_before=rows.before / arm[:, None],
         relative_velocity_after=rows.after / arm[:, None],

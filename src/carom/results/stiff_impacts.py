@@ -16,16 +16,16 @@ from carom.scene.stiffness import (
 )
 
 
-def stiff_impacts(solution, rows, mu, e, law) -> tuple[np.ndarray, np.ndarray]:
+def stiff_impacts(solution, rows, arm, laws) -> tuple[np.ndarray, np.ndarray]:
     """Return the greatest normal force [N] and the duration [s] of the impacts (K,).
 
-    They are NaN without a stiffness, or with a law that has no course. A point of a multiple impact has the
-    force by the work of its own compression, and no duration.
+    `arm` (K,) converts lengths of stops of angles, for which forces are torques; `laws` are the columns of
+    friction, restitution and law of impact. Both are NaN without a stiffness, or with a law without a course. A
+    point of a multiple impact has the force by the work of its own compression, and no duration.
     """
-    pairs = solution.pairs
     peak, took = np.full((2, len(rows)), np.nan)
-    numbers = rows.contact[rows.contact < len(pairs.body)]  # stops have no stiffness
-    for number in np.unique(numbers).tolist():
+    mu, e, law = laws
+    for number in np.unique(rows.contact).tolist():
         own = np.flatnonzero(rows.contact == number)
         own = own[[with_path(str(name)) for name in law[own]]]
         stated = stiffness_of(solution, number, rows[own])
@@ -36,7 +36,8 @@ def stiff_impacts(solution, rows, mu, e, law) -> tuple[np.ndarray, np.ndarray]:
         k = np.broadcast_to(k, len(own))
         alone = (rows.together[own] == 1) & np.isfinite(mu[own] + e[own])
         for i, one in zip(own[alone].tolist(), k[alone].tolist()):
-            took[i] = _duration(rows[i], float(mu[i]), float(e[i]), str(law[i]), (one, n))
+            W, u = np.array(rows[i].W) / arm[i] ** 2, np.array(rows[i].before) / arm[i]
+            took[i] = _duration((W, u, float(mu[i]), float(e[i]), str(law[i])), (one, n))
     return peak, took
 
 
@@ -47,7 +48,8 @@ def stiffness_of(solution, number: int, rows) -> tuple[float | np.ndarray, float
     """
     pairs, scene = solution.pairs, solution.scene
     if number >= len(pairs.body):
-        return None
+        stop = scene.stops[number - len(pairs.body)].stiffness
+        return None if stop is None else stop._of(None)
     stiffness = pairs.laws[pairs.law[number]].stiffness
     plane, other = pairs.plane[number], pairs.other[number]
     partner = scene.fixed[plane] if plane >= 0 else scene.bodies[other]
@@ -91,16 +93,18 @@ def _matrix(q) -> np.ndarray:
     return np.eye(3) + 2.0 * (w * K + K @ K)
 
 
-def _duration(row, mu: float, e: float, law: str, stiffness: tuple[float, float]) -> float:
-    """Return the duration of a single impact [s], NaN where it cannot be followed once more."""
+def _duration(stated: tuple, stiffness: tuple[float, float]) -> float:
+    """Return the duration of a single impact [s], NaN where it cannot be followed once more.
+
+    `stated` are W, the velocity before, friction, restitution and law.
+    """
     from carom.impact.api import resolve_impact
 
-    W, u = np.array(row.W), np.array(row.before)
-    stated = {"inverse_mass": W, "relative_velocity_before": u, "friction": mu}
+    names = "inverse_mass", "relative_velocity_before", "friction"
     try:
-        solved = resolve_impact(W, u, mu, e, law)
+        solved = resolve_impact(*stated)
         impulses = float(solved.compression_impulse[0]), float(solved.impulse[0])
         works = float(solved.compression_work), float(solved.restitution_work)
-        return duration(stated, impulses, works, *stiffness)
+        return duration(dict(zip(names, stated)), impulses, works, *stiffness)
     except ValueError:
         return np.nan
