@@ -123,8 +123,8 @@ class RailContact(Stop):
     def __init__(self, index: int, joint: Joint):
         d: Any = joint.definition
         keep(self, index=index, name=f"{joint.child.name}-{joint.name}", joint=joint, coordinate=0)
-        keep(self, lower=0.0, upper=None, restitution=d.restitution, impact_law=d.impact_law)
-        keep(self, stiffness=None)
+        keep(self, lower=0.0, upper=None, restitution=d.restitution)
+        keep(self, impact_law=d.impact_law, stiffness=None)
 
     @property
     def friction(self) -> Any:
