@@ -1,4 +1,4 @@
-"""The picture of the page of chains of balls: velocities after the impact.
+"""The picture of the page of chains of balls: velocities after the impact, and forces in it.
 
 Run ``python docs/pictures/ball_chains.py`` to make ``docs/_static/ball_chains.png``.
 """
@@ -54,7 +54,8 @@ def main() -> None:
         for (left, right), name, radii in zip(
             panels, ("equal", "tapered"), (names["EQUAL"], names["TAPERED"]), strict=True
         ):
-            after = carom.simulate(names["chain"](radii), 0.02).velocity[-1, :, 0]
+            run = carom.simulate(names["chain"](radii), 0.02)
+            after, force = run.velocity[-1, :, 0], run.impact_forces(0)
             exact, k = springs(radii)
             number = np.arange(1, 11)
             left.plot(number, exact.y[10:, -1], color=style.GREY, label="springs over time")
@@ -68,8 +69,9 @@ def main() -> None:
             x = exact.sol(t)[:10]
             colours = mpl_colours(9)
             for j in range(9):
+                right.plot(1e6 * force.t, force.normal_force[:, j] / 1e3, color=colours[j], lw=1.2)
                 F = k[j] * np.maximum(x[j] - x[j + 1], 0.0) ** 1.5
-                right.plot(1e6 * t, F / 1e3, color=colours[j], lw=1.0)
+                right.plot(1e6 * t, F / 1e3, ":", color=style.BLACK, lw=0.7)
             right.set(
                 xlabel=r"time [$\mathrm{\mu}$s]", ylabel="force [kN]", title="forces of the nine contacts",
                 xlim=(0, 1e6 * t[-1]), ylim=(0, None),

@@ -122,6 +122,9 @@ def run(folder):
         "Solution.to_xarray": lambda: (solution().to_xarray, dict(degrees=True)),
         "Solution.to_pandas": lambda: (solution().to_pandas, dict(degrees=True)),
         "Solution.evaluate": lambda: (solution().evaluate, dict(t=0.01, side="left")),
+        "Solution.impact_forces": lambda: (
+            solution().impact_forces, dict(k=0, stiffness=carom.Stiffness(1e6)),
+        ),
         "Solution.impact_history": lambda: (solution().impact_history, dict(k=0, steps=4)),
         "Solution.surface_power": lambda: (solution().surface_power, dict(part="floor")),
         "Solution.joint_coordinates": lambda: (swing().joint_coordinates, dict(joint="j", degrees=True)),

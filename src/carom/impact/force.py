@@ -307,7 +307,8 @@ def of_record(record, stiffness) -> ImpactForce:
 
     if record.together > 1:
         raise ValueError(
-            f"the impact must be a single one, got a part of one with {record.together} closed points"
+            f"the impact must be a single one, got a part of one with {record.together} closed points; "
+            "Solution.impact_forces(k) has the forces of all"
         )
     if record.unit != "m/s":
         checks.instance(

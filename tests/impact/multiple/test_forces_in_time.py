@@ -126,6 +126,12 @@ def test_stiffnesses_in_newton_are_their_ratios():
     assert slow.duration == pytest.approx(10 * stated.force().duration)
 
 
+def test_slip_without_friction_is_kept():
+    W, u = box_on_floor(np.random.default_rng(1))
+    impact = carom.resolve_impacts(W, u, 0, 0.5, stiffness=Stiffness(1e6))
+    np.testing.assert_allclose(impact.force().velocity[-1], impact.velocity_after, atol=1e-5)
+
+
 def test_what_has_no_course_is_refused():
     W, u, *_ = row_of_balls(np.full(3, 0.01))
     both = Stiffness(1e6)
@@ -155,3 +161,103 @@ def test_a_plot_has_all_forces():
     assert len(upper.lines) == 3  # and the axis
     assert len(lower.lines) == 2
     assert upper.lines[0].get_xdata()[-1] > 0.0
+
+
+def chain(radii, **contact):
+    scene = carom.Scene(gravity=(0, 0, 0))
+    scene.set_contact_default(restitution=1, friction=0, **contact)
+    x = np.concatenate([[0], np.cumsum(radii[:-1] + radii[1:])])
+    x[0] -= 1e-3
+    for k, radius in enumerate(radii):
+        scene.add_body(
+            carom.Sphere(radius),
+            density=DENSITY,
+            position=(x[k], 0, 0),
+            velocity=(0.0 if k else 1.0, 0, 0),
+        )
+    return scene
+
+
+def test_a_run_has_the_forces_of_impacts_at_once():
+    """Of a chain by Hertz's law: those of `resolve_impacts`, with the stiffness of each contact."""
+    radii = 0.01 * 0.9 ** np.arange(5)
+    solution = carom.simulate(chain(radii, stiffness=Hertz(STEEL, NU)), 0.01)
+    force = solution.impact_forces(0)
+    W, u, R, _ = row_of_balls(radii)
+    alone = carom.resolve_impacts(W, u, 0, 1, stiffness=[Hertz(STEEL, NU, radius=r) for r in R])
+    np.testing.assert_allclose(force.peak_force, alone.force().peak_force, rtol=1e-6)
+    assert force.duration == pytest.approx(alone.force().duration, rel=1e-5)
+    assert force.impacts == (0, 1, 2, 3)
+    np.testing.assert_allclose(solution.impacts.peak_force, force.peak_force, rtol=1e-5)
+    upper, _ = carom.plots.impact_force(solution, 2)
+    assert len(upper.lines) == 5
+
+
+def box(stiffness, turn=(0, 0, 0), **contact):
+    scene = carom.Scene()
+    scene.add_half_space((0, 0, 0), (0, 0, 1), name="floor")
+    scene.add_body(
+        carom.Box(0.2, 0.2, 0.1), mass=2.0, position=(0, 0, 0.3), name="box",
+        orientation=carom.euler("xyz", turn), velocity=(0.3, 0.1, -1),
+    )  # fmt: skip
+    scene.add_contact("box", "floor", restitution=0.5, friction=0.3, stiffness=stiffness, **contact)
+    return scene
+
+
+@pytest.mark.parametrize("law", ["newton", "poisson", "stronge"])
+@pytest.mark.parametrize("turn", [(0, 0, 0), (0, 3, 0)])
+def test_a_face_and_an_edge_of_a_box(law, turn):
+    solution = carom.simulate(box(Stiffness(1e6), turn, impact_law=law), 0.4)
+    hit = solution.impacts[0]
+    force = solution.impact_forces(0)
+    assert len(force.impacts) == hit.together == (2 if any(turn) else 4)
+    np.testing.assert_allclose(
+        force.peak_force, solution.impacts.peak_force[list(force.impacts)], rtol=1e-6
+    )
+    impulse = solution.impacts.impulse[list(force.impacts)]
+    np.testing.assert_allclose(force.impulse[-1, :, 0], impulse[:, 0], rtol=1e-5)
+    np.testing.assert_allclose(force.impulse[-1].sum(axis=0), impulse.sum(axis=0), rtol=1e-4)
+    with pytest.raises(ValueError, match=r"Solution\.impact_forces"):
+        hit.force(Stiffness(1e6))
+
+
+def test_joints_are_part_of_the_masses():
+    """Two pins of a rod that swings on a hinge strike the floor at once, with forces by their arms."""
+    scene, lift = carom.Scene(gravity=(0, 0, 0)), 0.02
+    pins = [carom.Part(carom.Sphere(0.02), position=(x, 0, 0)) for x in (-0.15, 0.15)]
+    r = 0.3 * np.array([np.cos(lift), 0, np.sin(lift)])
+    rod = scene.add_body(
+        carom.Compound(pins), mass=1.5, inertia=(0.01, 0.05, 0.05), position=r + (0, 0, 0.02),
+        orientation=carom.axis_angle((0, 1, 0), -np.degrees(lift)), velocity=np.cross((0, 3, 0), r),
+        angular_velocity=(0, 3, 0), name="rod",
+    )  # fmt: skip
+    scene.add_joint(carom.joints.Revolute((0, 0, 0.02), (0, 1, 0)), carom.GROUND, rod)
+    scene.add_half_space((0, 0, 0), (0, 0, 1), name="floor")
+    scene.add_contact(
+        "rod", "floor", restitution=0.4, friction=0, stiffness=Stiffness(1e6), impact_law="stronge"
+    )
+    solution = carom.simulate(scene, 0.02, options=carom.Options(corner_exponent=1))
+    force = solution.impact_forces(0)
+    assert len(force.impacts) == 2
+    arms, J = np.array([0.15, 0.45]), 0.05 + 1.5 * 0.3**2
+    order = np.argsort(force.peak_force)
+    peaks = 1e6 * arms * 3 * np.sqrt(J / (1e6 * (arms**2).sum()))
+    np.testing.assert_allclose(force.peak_force[order], peaks, rtol=1e-5)
+
+
+def test_other_ratios_and_blows_in_turn_are_refused():
+    radii = np.full(4, 0.01)
+    solution = carom.simulate(chain(radii), 0.01)
+    with pytest.raises(TypeError, match="stiffness must be stated"):
+        solution.impact_forces(0)
+    with pytest.raises(ValueError, match="ratios of stiffnesses"):
+        solution.impact_forces(0, Stiffness(1e6))  # another exponent
+    ok = solution.impact_forces(0, Stiffness(1e9, 1.5))
+    assert ok.peak_force.shape == (3,)
+    with pytest.raises(ValueError, match="ratios of stiffnesses"):
+        solution.impact_forces(0, [Stiffness(k, 1.5) for k in (1e9, 2e9, 1e9)])
+    with pytest.raises(IndexError, match="impact 7 of 3"):
+        solution.impact_forces(7)
+    in_turn = carom.simulate(chain(radii, multiple="sequential"), 0.01)
+    with pytest.raises(ValueError, match="one after another"):
+        in_turn.impact_forces(0, Stiffness(1e9, 1.5))

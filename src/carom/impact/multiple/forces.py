@@ -22,7 +22,8 @@ class ImpactForces:
     t : ndarray, shape (T,)
         Times since the first touch [s].
     normal_force, friction_force : ndarray, shapes (T, k) and (T, k, 2)
-        Forces [N].
+        Forces [N]. Where contacts are redundant (a face), the shares of friction are not determined, but their
+        sums.
     depth : ndarray, shape (T, k)
         Depths of the contacts [m]; below 0 where they are apart.
     velocity, impulse : ndarray, shape (T, k, 3)
@@ -34,6 +35,8 @@ class ImpactForces:
         none.
     duration : float
         Time from the first touch to the end of all forces [s].
+    impacts : tuple of int
+        Of a run the indices of the contacts in `Solution.impacts`, else empty.
     """
 
     t: np.ndarray
@@ -45,6 +48,7 @@ class ImpactForces:
     peak_force: np.ndarray
     contact_time: np.ndarray
     duration: float
+    impacts: tuple[int, ...] = ()
 
     def evaluate(self, t) -> np.ndarray:
         """Return the normal forces (..., k) at times within the impact, and 0 before and after it.
@@ -123,10 +127,11 @@ def forces_in_time(stated: dict[str, Any], solved, stiffness: tuple[np.ndarray, 
         raise ValueError(
             "the course of the impact could not be followed once more, so its forces are not known"
         )
-    return _made(rows, k)
+    return made(rows, k)
 
 
-def _made(rows: np.ndarray, k: int) -> ImpactForces:
+def made(rows: np.ndarray, k: int, impacts: tuple[int, ...] = ()) -> ImpactForces:
+    """Return the forces of k contacts, from the rows of their course."""
     from carom.impact.multiple.trace import CONTACT_COLUMNS
 
     keep = np.append(np.diff(rows[:, 0]) > 0.0, True)  # of several states at one time, the last
@@ -140,7 +145,7 @@ def _made(rows: np.ndarray, k: int) -> ImpactForces:
     return ImpactForces(
         t=t, normal_force=N, friction_force=state[..., 1:3], depth=state[..., 3],
         velocity=state[..., 4:7], impulse=state[..., 7:10], peak_force=N.max(axis=0), contact_time=spans,
-        duration=float(t[-1]),
+        duration=float(t[-1]), impacts=impacts,
     )  # fmt: skip
 
 

@@ -135,6 +135,12 @@ def course(W, u, friction, restitution, stiffness, settings: MultipleSettings) -
         if count != FULL:
             force = speed / (time * mass)
             units = [force] * 3 + [speed * time] + [speed] * 3 + [speed / mass] * 3
-            return rows[:count] * np.array([time, *units * k])
+            found = rows[:count] * np.array([time, *units * k])
+            states = found[:, 1:].reshape(count, k, CONTACT_COLUMNS)  # a view
+            P = states[..., 7:].reshape(count, -1)
+            states[..., 4:7] = u + (P @ W).reshape(
+                count, k, 3
+            )  # without friction, tangents were left out
+            return found
         size *= 8
     return None

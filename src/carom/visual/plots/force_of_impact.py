@@ -26,7 +26,8 @@ def impact_force(
     """Draw the force of one impact over time, by the stiffness of its contact, and the depth.
 
     The dotted line is the end of compression. What is left of the depth at the end is the dent of an impact
-    that does not give all back. Of several contacts all normal forces are drawn, with their numbers.
+    that does not give all back. Of contacts that strike together all normal forces are drawn, with their
+    numbers.
 
     Parameters
     ----------
@@ -108,6 +109,8 @@ def _force(solution, k, stiffness):
     figure.need_bodies(solution, "impact_force")
     figure.impact(solution, k)
     record, rows = solution.impacts[int(k)], solution._written.impact
+    if record.together > 1:
+        return solution.impact_forces(int(k), stiffness)
     if stiffness is None:
         place = range(len(rows))[int(k)]
         own = rows[place : place + 1]
