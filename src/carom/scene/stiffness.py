@@ -1,4 +1,7 @@
-"""How stiff a contact is: what an impact lasts, and its greatest force. The motion does not depend on it."""
+"""How stiff a contact is: what an impact lasts, and its greatest force.
+
+The motion does not depend on it, but the moduli of Hertz's laws divide an impact among several contacts.
+"""
 
 from __future__ import annotations
 

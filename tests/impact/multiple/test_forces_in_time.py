@@ -261,3 +261,47 @@ def test_other_ratios_and_blows_in_turn_are_refused():
     in_turn = carom.simulate(chain(radii, multiple="sequential"), 0.01)
     with pytest.raises(ValueError, match="one after another"):
         in_turn.impact_forces(0, Stiffness(1e9, 1.5))
+
+
+def test_moduli_decide_how_balls_share_an_impact():
+    """A row of steel, plastic and glass, by materials: as springs of Hertz's law integrated in time."""
+    young = np.array([210e9, 210e9, 3e9, 70e9, 210e9])
+    radii = np.array([0.01, 0.01, 0.012, 0.01, 0.008])
+    scene = carom.Scene(gravity=(0, 0, 0))
+    scene.set_contact_default()
+    x = np.concatenate([[0], np.cumsum(radii[:-1] + radii[1:])])
+    x[0] -= 1e-3
+    mass = np.array([0.03, 0.03, 0.01, 0.02, 0.015])
+    for k, E in enumerate(young):
+        scene.add_body(
+            carom.Sphere(radii[k]), mass=mass[k], position=(x[k], 0, 0),
+            velocity=(0.0 if k else 1.0, 0, 0), material=carom.Material(1.0, 0.0, young=E),
+        )  # fmt: skip
+    solution = carom.simulate(scene, 0.01)
+    modulus = 1 / ((1 - 0.3**2) * (1 / young[1:] + 1 / young[:-1]))
+    k = 4 / 3 * modulus * np.sqrt(radii[1:] * radii[:-1] / (radii[1:] + radii[:-1]))
+
+    def springs(y):
+        return k * np.maximum(y[:4] - y[1:5], 0.0) ** 1.5
+
+    def rates(t, y):
+        F = springs(y)
+        return np.concatenate([y[5:], (np.append(0, F) - np.append(F, 0)) / mass])
+
+    begin = np.zeros(10)
+    begin[5] = 1.0
+    run = solve_ivp(
+        rates, (0, 8e-3), begin, method="DOP853", rtol=1e-11, atol=1e-18, max_step=1e-6, dense_output=True
+    )  # fmt: skip
+    np.testing.assert_allclose(solution.velocity[-1, :, 0], run.y[5:, -1], rtol=0, atol=2e-6)
+    force = solution.impact_forces(0)
+    t = np.linspace(0, force.duration, 500)
+    there = np.array([springs(y) for y in run.sol(t).T])
+    np.testing.assert_allclose(force.evaluate(t), there, rtol=0, atol=1e-4 * there.max())
+
+
+def test_one_material_is_as_without():
+    radii = 0.01 * 0.9 ** np.arange(5)
+    one = carom.simulate(chain(radii), 0.01)
+    two = carom.simulate(chain(radii, stiffness=Hertz(STEEL, NU)), 0.01)
+    np.testing.assert_array_equal(one.velocity[-1], two.velocity[-1])
