@@ -6,6 +6,7 @@ Newton's tolerances are 1e-3 to 5 %. Gravity is 10 m/s^2 along -y there.
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 from scipy.special import ellipj, ellipk
 
 import carom
@@ -162,3 +163,45 @@ def test_two_bars_fixed_to_each_other_swing_as_one():
     end = solve_ivp(rates, (0, 1), [0, 0], method="DOP853", rtol=1e-13, atol=1e-14).y[0, -1]
     run = carom.simulate(scene, 1.0, rtol=1e-11)
     assert run["hinge"].coordinate[-1] == pytest.approx(end, abs=1e-9)
+
+
+def test_a_free_body_keeps_its_angular_momentum():
+    scene = carom.Scene(gravity=(0, 0, 0))
+    inertia = np.diag([0.2, 0.5, 0.4])
+    scene.add_body(mass=1, inertia=inertia, angular_velocity=(0.7, -0.5, 0.9))
+    run = carom.simulate(scene, 0.2)
+    R = Rotation.from_quat(run.orientation[:, 0], scalar_first=True).as_matrix()
+    momentum = np.einsum("tij,jk,tlk,tl->ti", R, inertia, R, run.angular_velocity[:, 0])
+    np.testing.assert_allclose(momentum, momentum[:1].repeat(len(momentum), 0), atol=1e-14)
+
+
+def test_a_rod_on_a_ball_joint_swings_as_euler_s_equations():
+    lean = Rotation.from_rotvec((0, 0, 0.5))
+    place = lean.apply((0, -0.25, 0))
+    scene = carom.Scene(gravity=(0, -9.81, 0))
+    rod = scene.add_body(
+        carom.Box(0.04, 0.5, 0.04), density=1000, position=place,
+        orientation=lean.as_quat(scalar_first=True), angular_velocity=(3, 0, 0),
+        velocity=np.cross((3, 0, 0), place),
+    )  # fmt: skip
+    scene.add_joint(joints.Spherical((0, 0, 0)), GROUND, rod)
+    m, arm = 0.8, np.array((0, -0.25, 0))
+    J = m / 12 * np.array((0.04**2 + 0.25, 2 * 0.04**2, 0.04**2 + 0.25)) + m / 16 * np.array(
+        (1, 0, 1)
+    )
+
+    def rates(t, y):
+        q, w = y[:4], y[4:]
+        weight = (
+            Rotation.from_quat(q / np.linalg.norm(q), scalar_first=True)
+            .inv()
+            .apply((0, -9.81 * m, 0))
+        )
+        dq = 0.5 * np.array((-q[1:] @ w, *(q[0] * w + np.cross(q[1:], w))))
+        return np.concatenate([dq, (np.cross(arm, weight) - np.cross(w, J * w)) / J])
+
+    begin = np.concatenate([lean.as_quat(scalar_first=True), lean.inv().apply((3.0, 0, 0))])
+    end = solve_ivp(rates, (0, 1), begin, method="DOP853", rtol=1e-13, atol=1e-14).y[:4, -1]
+    run = carom.simulate(scene, 1.0, rtol=1e-11)
+    there = Rotation.from_quat(end, scalar_first=True).apply(arm)
+    np.testing.assert_allclose(run.position[-1, 0], there, rtol=0, atol=1e-9)
