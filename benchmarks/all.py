@@ -26,9 +26,18 @@ ROOT = HERE.parent
 SCRIPTS = (
     "free_step", "impact", "corner", "coulomb", "location", "convergence", "accuracy", "work_precision",
     "chain", "loops", "methods", "heaps", "many", "many_bodies", "pairs", "ensembles", "scaling", "allocation",
-    "startup", "short_calls", "user_functions", "cube_tosses", "real_impacts", "installed",
+    "startup", "short_calls", "user_functions", "cube_tosses", "real_impacts", "simbenchmark", "cenic",
+    "installed",
 )  # fmt: skip
-PICTURES = ("work_precision", "accuracy", "scaling", "convergence", "location")
+PICTURES = (
+    "work_precision",
+    "accuracy",
+    "scaling",
+    "convergence",
+    "location",
+    "simbenchmark",
+    "cenic",
+)
 
 
 def into_docs(out: Path) -> list[str]:

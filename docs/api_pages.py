@@ -48,7 +48,7 @@ TOPICS = {
     "Solution": {
         "Motion": ("t", "position", "orientation", "velocity", "angular_velocity", "evaluate"),
         "Parts by name": ("body", "joint", "force", "constraint", "contact"),
-        "Impacts": ("impacts", "joint_impulses", "impact_history", "events", "switches"),
+        "Impacts": ("impacts", "joint_impulses", "impact_forces", "impact_history", "events", "switches"),
         "Contact that stays": (
             "contacts", "contact_mode", "contact_force", "forces", "surface_power", "held_residual", "pairs",
         ),

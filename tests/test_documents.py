@@ -14,7 +14,7 @@ import pytest
 import carom
 
 ROOT = Path(__file__).parents[1]
-FOLDERS = (ROOT / "docs" / "tutorial", ROOT / "docs" / "howto")
+FOLDERS = tuple(ROOT / "docs" / name for name in ("tutorial", "howto", "published"))
 PAGES = ["README.md", "docs/index.md", "docs/start.md"]
 PAGES += sorted(str(p.relative_to(ROOT)) for folder in FOLDERS for p in folder.glob("*.md"))
 BLOCK = re.compile(r"^```(\w+)\n(.*?)^```", re.MULTILINE | re.DOTALL)

@@ -122,6 +122,9 @@ def run(folder):
         "Solution.to_xarray": lambda: (solution().to_xarray, dict(degrees=True)),
         "Solution.to_pandas": lambda: (solution().to_pandas, dict(degrees=True)),
         "Solution.evaluate": lambda: (solution().evaluate, dict(t=0.01, side="left")),
+        "Solution.impact_forces": lambda: (
+            solution().impact_forces, dict(k=0, stiffness=carom.Stiffness(1e6)),
+        ),
         "Solution.impact_history": lambda: (solution().impact_history, dict(k=0, steps=4)),
         "Solution.surface_power": lambda: (solution().surface_power, dict(part="floor")),
         "Solution.joint_coordinates": lambda: (swing().joint_coordinates, dict(joint="j", degrees=True)),
@@ -185,6 +188,13 @@ def run(folder):
             carom.resolve_impacts,
             dict(inverse_mass=W, velocity=[(-1.0, 1.0, 0.0)], friction=0.1, restitution=0.5, law="newton",
                  multiple="simultaneous", stiffness=[1.0], exponent=1.0, rtol=1e-8, tangential_restitution=0.5),
+        ),
+        "CornerImpact.force": lambda: (
+            carom.resolve_impacts(W, [(-1.0, 1.0, 0.0)], 0.1, 0.5).force, dict(stiffness=carom.Stiffness(1e6)),
+        ),
+        "impact.ImpactForces.evaluate": lambda: (
+            carom.resolve_impacts(W, [(-1.0, 1.0, 0.0)], 0.1, 0.5).force(carom.Stiffness(1e6)).evaluate,
+            dict(t=0.0),
         ),
         "solve_contacts": lambda: (
             carom.solve_contacts,

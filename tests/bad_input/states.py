@@ -169,7 +169,7 @@ def stated():
         "Scene.add_constraint": lambda: joined(lambda p: constraints.Gear(p.hinge, p.slide, 2.0)),
         "Scene.add_stop": of_scene(
             "add_stop", joint="@hinge", lower=-1.0, upper=None, restitution=0.5, impact_law="newton",
-            coordinate=0, name="new", replace=True,
+            stiffness=carom.Stiffness(1e3), coordinate=0, name="new", replace=True,
         ),
         "Scene.add_play": of_scene(
             "add_play", joint="@hinge", lower=-1.0, upper=1.0, restitution=0.5, friction=0.1,

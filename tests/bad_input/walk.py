@@ -27,6 +27,7 @@ DOCUMENTED = {
     "Solution.joint_coordinates": KeyError,
     "Solution.surface_power": KeyError,
     "results.SystemState.joint_coordinates": KeyError,
+    "Solution.impact_forces": IndexError,
     "Solution.impact_history": IndexError,
     "Mesh.load": FileNotFoundError,
     "Solution.load": FileNotFoundError,

@@ -198,3 +198,130 @@ def test_what_has_no_force_is_refused():
         carom.resolve_impact(*FRICTION, 0.5, stiffness=Hertz(1e9))
     with pytest.raises(TypeError, match="stiffness"):
         carom.resolve_impact(*FRICTION, 0.5).force()
+
+
+def struck(shape, partner=None, orientation=(1, 0, 0, 0), height=0.1, **hertz):
+    """Return the first impact of a body on a plane or on a fixed shape, at 1 m/s."""
+    scene = carom.Scene(gravity=(0, 0, 0))
+    scene.add_body(
+        shape,
+        mass=0.03,
+        position=(0, 0, height),
+        velocity=(0, 0, -1),
+        orientation=orientation,
+        name="body",
+    )
+    if partner is None:
+        scene.add_half_space((0, 0, 0), (0, 0, 1), name="floor")
+    else:
+        scene.add_static(partner, position=(0, 0, -0.02), name="floor")
+    stated = Hertz((2e9, 70e9), (0.35, 0.33), **hertz)
+    scene.add_contact("body", "floor", restitution=0.7, friction=0.2, stiffness=stated)
+    return carom.simulate(scene, 0.2)
+
+
+def elliptic(high, low):
+    """Return R^(1/2) F2^(-3/2) of Hertz's law by SciPy (Johnson 1985, 4.26 to 4.32)."""
+    from scipy.optimize import brentq
+    from scipy.special import ellipe, ellipk
+
+    def parts(k):
+        K, E = ellipk(1 - k * k), ellipe(1 - k * k)
+        return K, E / k**2 - K, K - E
+
+    def wrong(k):
+        _, a, b = parts(k)
+        return a / b - high / low
+
+    k = brentq(wrong, 1e-3, 1 - 1e-9)
+    K, a, b = parts(k)
+    F1 = (4 / (np.pi * (1 - k * k)) * k**1.5 * np.sqrt(a * b)) ** (1 / 3)
+    F2 = 2 / np.pi * np.sqrt(k) * K / F1
+    return (high * low) ** -0.25 * F2**-1.5
+
+
+def test_an_ellipsoid_has_the_curvatures_of_its_point():
+    a, b, c = 0.03, 0.02, 0.01
+    peak = struck(carom.Ellipsoid(a, b, c)).impacts.peak_force[0]
+    k = 4 / 3 * Hertz((2e9, 70e9), (0.35, 0.33)).modulus * elliptic(c / b**2, c / a**2)
+    assert peak == pytest.approx(k**0.4 * (1.25 * 0.03) ** 0.6, rel=1e-9)
+    lying = struck(carom.Ellipsoid(b, c, a), orientation=carom.euler("xyz", (0, 90, 0)))
+    k = 4 / 3 * Hertz((2e9, 70e9), (0.35, 0.33)).modulus * elliptic(b / c**2, b / a**2)
+    assert lying.impacts.peak_force[0] == pytest.approx(k**0.4 * (1.25 * 0.03) ** 0.6, rel=1e-9)
+    force = carom.plots.impact_force(lying, 0, panel="force")
+    assert force.lines[0].get_ydata().max() > 0.0
+
+
+def test_a_ball_is_an_ellipsoid_of_equal_axes():
+    ball, same = carom.Sphere(0.02), carom.Ellipsoid(0.02, 0.02, 0.02)
+    for partner in (None, ball, same):
+        one, two = struck(ball, partner).impacts, struck(same, partner).impacts
+        assert two.peak_force[0] == pytest.approx(one.peak_force[0], rel=1e-12)
+        assert two.duration[0] == pytest.approx(one.duration[0], rel=1e-9)
+
+
+def test_two_ellipsoids_across_each_other():
+    """Two that lie crosswise have the sums of their curvatures; turned by 90 degrees they have others."""
+    flat, long = carom.Ellipsoid(0.02, 0.02, 0.01), carom.Ellipsoid(0.04, 0.02, 0.02)
+    modulus = Hertz((2e9, 70e9), (0.35, 0.33)).modulus
+    for turn in (0, 90):
+        peak = struck(long, flat, carom.euler("xyz", (0, 0, turn))).impacts.peak_force[0]
+        low, high = sorted([0.02 / 0.04**2 + 0.01 / 0.02**2, 0.02 / 0.02**2 + 0.01 / 0.02**2])
+        k = 4 / 3 * modulus * elliptic(high, low)
+        assert peak == pytest.approx(k**0.4 * (1.25 * 0.03) ** 0.6, rel=1e-8)
+
+
+def test_a_run_says_where_waves_are_as_slow_as_the_impact():
+    """A ball of 2 cm strikes for .24 ms, a wave needs .1 ms; a rod of 40 cm of the same material some 2 ms."""
+    assert not struck(carom.Sphere(0.02)).warnings
+    rod = struck(
+        carom.Capsule(0.02, 0.4),
+        orientation=carom.euler("xyz", (0, 3, 0)),
+        height=0.25,
+        radius=0.02,
+    )
+    (said,) = [str(one) for one in rod.warnings if "wave" in str(one)]
+    assert "'body-floor'" in said
+    assert "'body'" in said
+    wave = 4 * 0.22 * np.sqrt(0.03 / carom.Capsule(0.02, 0.4).volume / 2e9)
+    assert f"{wave:.2g} s to pass" in said
+
+
+@pytest.mark.parametrize("exponent", [1.0, 1.5])
+def test_a_stop_of_an_angle_has_a_torque(exponent, tmp_path):
+    """A rod that falls on a stop is a spring in its hinge: M = (k J)^(1/2) w, T = pi/2 (J/k)^(1/2) (1 + e)."""
+    scene = carom.Scene(gravity=(0, 0, 0))
+    rod = scene.add_body(
+        carom.Box(0.5, 0.02, 0.02), mass=2.0, position=(0.25, 0, 0), angular_velocity=(0, 3, 0),
+        velocity=(0, 0, -0.75), name="rod",
+    )  # fmt: skip
+    hinge = scene.add_joint(carom.joints.Revolute((0, 0, 0), (0, 1, 0)), carom.GROUND, rod)
+    stiffness = Stiffness(4e4, exponent)
+    scene.add_stop(hinge, upper=0.3, restitution=0.6, stiffness=stiffness, name="stop")
+    solution = carom.simulate(scene, 0.2)
+    hit = solution.impacts[0]
+    J = 2.0 / 12 * (0.5**2 + 0.02**2) + 2.0 * 0.25**2
+    expected = carom.resolve_impact(np.diag([1 / J, 0, 0]), (-3, 0, 0), 0, 0.6, stiffness=stiffness)
+    assert hit.peak_force == pytest.approx(expected.peak_force, rel=1e-9)
+    assert hit.duration == pytest.approx(expected.duration, rel=1e-9)
+    assert hit.force(stiffness).peak_force == pytest.approx(hit.peak_force, rel=1e-9)
+    if exponent == 1.0:
+        assert hit.peak_force == pytest.approx(np.sqrt(4e4 * J) * 3, rel=1e-9)
+        assert hit.duration == pytest.approx(np.pi / 2 * np.sqrt(J / 4e4) * 1.6, rel=1e-9)
+    with pytest.raises(TypeError, match="of a stop of an angle"):
+        hit.force(Hertz(1e9, radius=0.1))
+    solution.save(tmp_path / "run.nc")
+    again = carom.Solution.load(tmp_path / "run.nc")
+    assert again.scene["stop"].stiffness == stiffness
+    assert again.impacts.peak_force[0] == pytest.approx(hit.peak_force, rel=1e-12)
+    assert scene.copy().replace("stop", lower=None, stiffness=None) is not None
+
+
+def test_a_stop_of_a_slide_has_a_force():
+    scene = carom.Scene(gravity=(0, 0, 0))
+    ram = scene.add_body(carom.Box(0.1, 0.1, 0.1), mass=4.0, velocity=(2, 0, 0), name="ram")
+    way = scene.add_joint(carom.joints.Prismatic((1, 0, 0)), carom.GROUND, ram)
+    scene.add_stop(way, upper=0.1, restitution=1.0, stiffness=Stiffness(1e6))
+    hit = carom.simulate(scene, 0.1).impacts[0]
+    assert hit.peak_force == pytest.approx(2 * np.sqrt(4e6), rel=1e-9)
+    assert hit.duration == pytest.approx(np.pi * np.sqrt(4e-6), rel=1e-9)

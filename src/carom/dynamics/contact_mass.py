@@ -77,7 +77,6 @@ def contact_inverse_mass(
     1.0
     """
     from carom.model.compile import compile_scene
-    from carom.model.records import new_work
 
     checks.instance("scene", scene, (Scene,))
     struck = [scene._parts.member("body", body, (Body,))]
@@ -98,16 +97,28 @@ def contact_inverse_mass(
         )
 
     compiled = compile_scene(scene, Options(), loops=True)
-    system, start = compiled.system, compiled.start
+    sides = [(sign, one.index) for sign, one in zip((1.0, -1.0), struck)]
+    return delassus(compiled.system, compiled.start, [(sides, point, axes)])
+
+
+def delassus(system, state, points) -> np.ndarray:
+    """Return W (3k, 3k) of k points of a system, compiled with its joints as loops, in a state.
+
+    Each point is ``(sides, place, axes)``: the bodies at it with their signs, its place in the world, and its
+    axes (3, 3), normal first.
+    """
+    from carom.model.records import new_work
+
     scale = 1.0 / np.sqrt(mass_matrix(system))
-    g = np.zeros((3, len(scene.bodies), 6))
-    for sign, one in zip((1.0, -1.0), struck):
-        arm = np.cross(point - one.position, axes)
-        turn = quaternion.rotate_back(np.broadcast_to(start.Q[one.index], (3, 4)), arm)
-        g[:, one.index] = sign * np.hstack([axes, turn])
-    g = (g * scale).reshape(3, -1)
+    g = np.zeros((3 * len(points), len(system.bodies), 6))
+    for k, (sides, place, axes) in enumerate(points):
+        for sign, b in sides:
+            arm = np.cross(place - state.x[b], axes)
+            turn = quaternion.rotate_back(np.broadcast_to(state.Q[b], (3, 4)), arm)
+            g[3 * k : 3 * k + 3, b] = sign * np.hstack([axes, turn])
+    g = (g * scale).reshape(len(g), -1)
     if len(system.joints):
-        A, owner = dense_rows(system, start, new_work(system, 1), rotors=True)
+        A, owner = dense_rows(system, state, new_work(system, 1), rotors=True)
         inertia = np.ones(len(system.joints))
         inertia[is_inertia(system.joints)] = system.relations.rotors.inertia
         soft = np.where(is_inertia(system.joints), 1.0 / np.sqrt(inertia), 0.0)[owner]
@@ -115,7 +126,7 @@ def contact_inverse_mass(
         rows /= np.linalg.norm(rows, axis=1, keepdims=True)
         _, size, basis = np.linalg.svd(rows, full_matrices=False)
         basis = basis[size > RANK * size[0]]
-        whole = np.hstack([g, np.zeros((3, len(A)))])
+        whole = np.hstack([g, np.zeros((len(g), len(A)))])
         g = whole - (whole @ basis.T) @ basis
         held = np.linalg.norm(g, axis=1) <= ROUND_OFF * np.linalg.norm(whole, axis=1)
         g[held] = 0.0

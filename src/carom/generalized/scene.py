@@ -41,7 +41,7 @@ class GapContact(Stop):
         gap = Gap(GROUND, body, None, None, contact.index, size)
         keep(self, index=contact.index, name=contact.name, joint=gap, coordinate=0, contact=contact)
         keep(self, lower=0.0, upper=None, restitution=contact.restitution)
-        keep(self, impact_law=contact.impact_law)
+        keep(self, impact_law=contact.impact_law, stiffness=None)
 
     @property
     def friction(self):

@@ -4,6 +4,7 @@ from carom.impact.api import Impact, resolve_impact
 from carom.impact.force import ImpactForce
 from carom.impact.geometry import NormalMotion, diagonal_form
 from carom.impact.history import LayerHistory, impact_layer
+from carom.impact.multiple.forces import ImpactForces
 from carom.impact.slip_directions import (
     InvariantDirections,
     critical_friction,
@@ -13,6 +14,7 @@ from carom.impact.slip_directions import (
 __all__ = [
     "Impact",
     "ImpactForce",
+    "ImpactForces",
     "InvariantDirections",
     "LayerHistory",
     "NormalMotion",

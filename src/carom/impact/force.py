@@ -20,7 +20,7 @@ import numpy as np
 
 from carom.geometry.thresholds import EPSILON
 from carom.impact.thresholds import NO_ENERGY
-from carom.scene.stiffness import ABSOLUTE
+from carom.scene.stiffness import ABSOLUTE, Stiffness
 
 NODES, TIMES_A_PIECE = 24, 24  # of Gauss's rule between two times; times that are stated on a piece
 
@@ -302,13 +302,18 @@ def of_stated(stated: dict[str, Any], stiffness) -> ImpactForce:
 
 
 def of_record(record, stiffness) -> ImpactForce:
-    """Return the force of an impact of a run."""
+    """Return the force of an impact of a run, of a stop of an angle the torque."""
+    from carom import checks
+
     if record.together > 1:
         raise ValueError(
-            f"the impact must be a single one, got a part of one with {record.together} closed points"
+            f"the impact must be a single one, got a part of one with {record.together} closed points; "
+            "Solution.impact_forces(k) has the forces of all"
         )
     if record.unit != "m/s":
-        raise ValueError("the impact must be one of two bodies, got that of a stop of an angle")
+        checks.instance(
+            "stiffness", stiffness, (Stiffness,), " [N m/rad^exponent], of a stop of an angle"
+        )
     names = "inverse_mass", "relative_velocity_before", "friction", "restitution", "law"
     stated = {name: getattr(record, name) for name in names}
     plain = {n: v.item() if isinstance(v, np.generic) else v for n, v in stated.items()}

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 import math
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import entry, kernel
 from carom.contact.operations import curvatures
 from carom.impact.thresholds import EQUAL_CURVATURES
 
@@ -29,6 +29,12 @@ def stiffness(system, contact, point, state):
     high, low = middle + apart, middle - apart
     if not low > 0.0:  # they fit into each other along a line, which is no point contact
         low = high
+    return (high * low) ** -0.25 * ellipse(high / low)
+
+
+@entry
+def root_of_radius(high, low):
+    """Return R^(1/2) F^(-3/2) for the relative principal curvatures of a point [1/m], high >= low > 0."""
     return (high * low) ** -0.25 * ellipse(high / low)
 
 

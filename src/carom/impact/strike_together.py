@@ -7,6 +7,7 @@ import math
 from carom._compiled.decorators import by_reference, kernel
 from carom._compiled.units import unit
 from carom.contact.gap import slow, speed_of
+from carom.contact.kinds.partner import closed_within
 from carom.dynamics.contact_impulse import add_velocity, spread
 from carom.geometry.thresholds import SUM_ERROR
 from carom.impact.collapse import count_blow, effective_restitution
@@ -14,9 +15,9 @@ from carom.impact.driven import blocked
 from carom.impact.hertz import stiffness
 from carom.impact.layout import OK
 from carom.impact.multiple.layout import SEQUENTIAL, CornerContacts, MultipleSettings
-from carom.impact.multiple.resolve import resolve_multiple
+from carom.impact.multiple.resolve import fastest, resolve_multiple
 from carom.impact.record import note_drive, write_share
-from carom.impact.thresholds import GROUP_SEED
+from carom.impact.thresholds import GROUP_SEED, NO_RESTITUTION
 from carom.law.friction import bound_of_stick
 from carom.model.allowance import COUNT_FACTORS, left
 from carom.model.laws import PERSISTENT, STRIKES
@@ -89,6 +90,28 @@ def pair_of(i, system, closed, all_by_pairs):
 
 
 @kernel
+def strikes_in_turn(model, data, k):
+    """Return whether one of k closed points has just struck and recedes, while others approach.
+
+    They are the last of a sequence of blows, each over before the next, that has shrunk to the tolerance of
+    ties (mathematics page, §2.6). Passed together, the layers would leave speeds that depend on it.
+    """
+    u, group, now = data.group.u, data.group, data.clocks[0].now
+    least = NO_RESTITUTION * fastest(k, u)
+    for i in range(k):
+        closed = group.closed[i]
+        contact, contact_state = (
+            model.system.contacts[closed.contact],
+            data.active.contact_states[closed.contact],
+        )
+        recedes = closed.active < 0 and contact_state.blows > 0 and u[3 * i] > least > 0.0
+        near = closed_within(model.controls, contact, data.state)
+        if recedes and u[3 * i] * (now - contact_state.struck) <= near:
+            return True
+    return False
+
+
+@kernel
 def by_pair(system, contact):
     """Return whether the pair of a contact has impacts of its own, one after another."""
     return system.laws.table[contact.law[STRIKES]].multiple == SEQUENTIAL
@@ -104,6 +127,7 @@ def strike_together(model, data, c, k):
     active, state, group, multiple = data.active, data.state, data.group, data.multiple
     work, step = data.work, data.work.step[0]
     hit, u = work.hit[0], group.u
+    in_turn = strikes_in_turn(model, data, k)
     count_blows(model, data, k)
     for i in range(k):
         contact = system.contacts[group.closed[i].contact]
@@ -124,7 +148,7 @@ def strike_together(model, data, c, k):
         if contact.ball_like == 1:
             multiple.hertz[i] = stiffness(system, contact, group.points[0][i], state)
         all_by_pairs = multiple.settings.multiple == SEQUENTIAL
-        given.pair = pair_of(i, system, group.closed, all_by_pairs)
+        given.pair = 1 + i if in_turn else pair_of(i, system, group.closed, all_by_pairs)
     passage = multiple.workspace.work.clock[0]
     if model.controls.retry == 1:  # the group can take a time-stepping step instead
         passage.left = int(max(0.0, left(model.controls, step, COUNT_FACTORS)) / work_of_step(k))

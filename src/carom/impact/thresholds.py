@@ -69,3 +69,6 @@ UNIT_ROOT = 1e-6  #: 1: distance of a root from the unit circle, on which it the
 LEAST_TURN = 1e-6  #: greatest term of the turn: least slope by which Newton's method goes on
 SAME_SLIP = 1e-7  #: rad: directions of slip that differ by less are one
 NO_ENERGY = 1e-14  #: work of compression: less that restitution gives back counts as none
+COURSE_ERROR = 1e-5  #: greatest impulse: by which an impact that is followed once more may differ
+COURSE_SHARE = 1e-2  #: tolerance: of an impact that is followed in time, so that its forces are as accurate
+FIRST_FORCE = 1e-3  #: greatest force of a contact: at which its time begins and ends

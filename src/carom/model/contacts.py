@@ -28,6 +28,7 @@ from carom.scene.materials import ContactLaw, Material
 from carom.scene.scene import Scene
 from carom.scene.shapes import Shape
 from carom.scene.speed_law import SpeedLaw
+from carom.scene.stiffness import Hertz
 from carom.scene.surfaces import SurfaceDefinition
 
 
@@ -69,6 +70,7 @@ def compile_contacts(
     """
     known, later = first_pairs(scene, apart)
     first_law = len(laws.rows)
+    laws.stiffest = _stiffest(known, later is not None)
     for one in known.laws:
         laws.add_pair(one)
     many = later is not None or len(known.body) > FEW_CONTACTS
@@ -94,6 +96,16 @@ def compile_contacts(
     bare = made._replace(pairs=None, surfaces=made.surfaces._replace(laws=None))
     _KNOWN[key] = Template(bare)
     return made
+
+
+def _stiffest(known: PairTable, more: bool) -> float:
+    """Return the greatest modulus E* [Pa] of the pairs, if all have Hertz's law, else 0.
+
+    If `more` pairs may come, all laws count.
+    """
+    used = known.laws if more else [known.laws[k] for k in np.unique(known.law).tolist()]
+    moduli = [law.stiffness.modulus for law in used if isinstance(law.stiffness, Hertz)]
+    return max(moduli) if moduli and len(moduli) == len(used) else 0.0
 
 
 #: contacts by all that they depend on

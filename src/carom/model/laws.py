@@ -12,6 +12,7 @@ from carom.model.pieces import Pieces
 from carom.scene.friction import bound_of
 from carom.scene.materials import IMPACT_LAWS, MULTIPLE, ContactLaw
 from carom.scene.speed_law import SpeedLaw
+from carom.scene.stiffness import Hertz
 
 #: which of the two laws of a contact is in force: its friction may differ
 STRIKES, PERSISTENT = range(2)
@@ -55,6 +56,7 @@ class LawTable:
     """The laws of a scene, which are added one by one."""
 
     def __init__(self):
+        self.stiffest = 0.0  # greatest modulus, where all pairs have Hertz's law [Pa]
         self.rows: list[tuple] = []
         self.pieces = Pieces()
         self._known: dict[Hashable, int] = {}
@@ -81,11 +83,17 @@ class LawTable:
             "turning": (law.rolling_friction, law.pivoting_friction),
             "tangential_restitution": law.tangential_restitution,
             "impact_law": IMPACT_LAWS.index(law.impact_law), "multiple": MULTIPLE.index(law.multiple),
-            "stiffness": law.relative_stiffness, "adhesion": law.adhesion,
+            "stiffness": self._stiffness(law), "adhesion": law.adhesion,
         }  # fmt: skip
         first = self.add(law.friction, law.restitution, **other)
         self.add(law.friction_held, law.restitution, **other)
         return first
+
+    def _stiffness(self, law: ContactLaw) -> float:
+        """Return the stiffness relative to others: of the moduli where all pairs have Hertz's law."""
+        if self.stiffest > 0.0 and isinstance(law.stiffness, Hertz):
+            return law.stiffness.modulus / self.stiffest
+        return law.relative_stiffness
 
     def add_once(self, key: Hashable, law: ContactLaw) -> int:
         """Add the law of a pair, unless there is one by this key; return its first number."""

@@ -12,7 +12,7 @@ from carom.geometry import quaternion
 from carom.impact.layout import AT_END, WEDGED
 from carom.model import records as r
 from carom.model.laws import law_of
-from carom.results import stiff_forces
+from carom.results import stiff_forces, waves
 from carom.results.accuracy import sentences
 from carom.results.beyond_bounds import beyond_bounds
 from carom.results.costs import busiest
@@ -74,6 +74,7 @@ def assemble(run, status: Status) -> dict:
         "warnings": (
             *sentences(run.watch[0], run.how.finer, run.scene, run.pairs),
             *remarks(impact, event, run),
+            *waves.remarks(impact, run),
             *stiff_forces.remarks(run, series, state),
             *beyond_bounds(run, impact, rec.touch, series["t"]),
             *tipped_strands(run, rec.state, series["t"]),
@@ -172,7 +173,7 @@ def impact_table(solution) -> ImpactTable:
     e = _restitutions(rows, contacts["restitution"][c], arm, solution)
     mu = np.where(_not_one_mu(contacts, first)[place], np.nan, contacts["friction"][c])
     law = np.array(IMPACT_LAWS)[contacts["impact_law"][c]]
-    peak, duration = stiff_impacts(solution, rows, mu, e, law)
+    peak, duration = stiff_impacts(solution, rows, arm, (mu, e, law))
     return ImpactTable(
         relative_velocity_before=rows.before / arm[:, None],
         relative_velocity_after=rows.after / arm[:, None],

@@ -35,6 +35,7 @@ from carom.status import Status
 from carom.stepping.settings import settings_of
 
 if TYPE_CHECKING:
+    from carom.impact import ImpactForces
     from carom.results.assemble import Written
     from carom.results.state import SystemState
     from carom.run import Run
@@ -512,6 +513,36 @@ class Solution(Portable, Drawn, Source, InSpans):
         return flights(self)
 
     @arguments.known
+    def impact_forces(self, k: int, stiffness=None) -> ImpactForces:
+        """Return the forces in time of impact k and of all impacts at its time, which share it.
+
+        Parameters
+        ----------
+        k : int
+            Index of the impact; negative indices count from the end.
+        stiffness : Stiffness or Hertz, or a sequence of them, optional
+            Of all impacts at this time, or of each. Default: those that the contacts state. Of a face with
+            several points each point has it.
+
+        Returns
+        -------
+        carom.impact.ImpactForces
+
+        Raises
+        ------
+        IndexError
+            If there is no impact k.
+        TypeError, ValueError
+            If no stiffness in newton is stated, or the impacts have no course in time with it: they were solved
+            with other ratios of stiffnesses or another exponent, or one after another.
+        """
+        from carom.results.impact_forces import impact_forces
+
+        count, k = len(self.impacts), checks.integer("k", k)
+        if not -count <= k < count:
+            raise IndexError(f"k must be the index of an impact, got impact {k} of {count}")
+        return impact_forces(self, k, stiffness)
+
     def impact_history(self, k: int, steps: int | None = None):
         """Return impact k resolved in time inside its boundary layer, a `LayerHistory`.
 

@@ -11,7 +11,7 @@ from carom.geometry import quaternion
 from carom.scene.bodies import Body, HalfSpace, StaticBody
 from carom.scene.materials import IMPACT_LAWS, ContactLaw
 from carom.scene.profile_pairs import check_profiles
-from carom.scene.stiffness import ABSOLUTE, Hertz, curvature_of
+from carom.scene.stiffness import ABSOLUTE, Hertz, is_point_contact
 from carom.scene.surfaces import SurfaceDefinition
 from carom.scene.user_surface import Surface, check_at, evaluator
 from carom.scene.values import PartOfScene, in_scene
@@ -36,10 +36,14 @@ def check_curvature(body: Body, other: HalfSpace | StaticBody | Body) -> None:
 
 def check_hertz(stiffness, body: Body, other) -> None:
     """Refuse Hertz's law without a radius for shapes that do not tell one."""
-    if isinstance(stiffness, Hertz) and stiffness.radius is None and not curvature_of(body, other):
+    if (
+        isinstance(stiffness, Hertz)
+        and stiffness.radius is None
+        and not is_point_contact(body, other)
+    ):
         raise ValueError(
-            f"stiffness of {body.name!r} on {other.name!r} must have a radius, which only two balls, or a ball "
-            "and a plane, have by themselves: carom.Hertz(young, poisson, radius=), with 1/radius the sum of "
+            f"stiffness of {body.name!r} on {other.name!r} must have a radius, which only balls, ellipsoids "
+            "and planes have by themselves: carom.Hertz(young, poisson, radius=), with 1/radius the sum of "
             "the curvatures where they touch; an edge or a face has none, give carom.Stiffness(k, exponent)"
         )
 

@@ -62,7 +62,8 @@ class ContactLaw:
         after the impact.
     stiffness : float, Stiffness or Hertz
         Stiffness of the boundary layer of the contact relative to those of simultaneous contacts, above 0.
-        Default 1. Or that of the bodies, from which force and duration of an impact follow.
+        Default 1. Or that of the bodies, from which force and duration of an impact follow; the moduli of
+        Hertz's laws also divide impacts of several contacts, if all pairs of a scene have one.
     rolling_friction, pivoting_friction : float
         Greatest moment against rolling, and about the normal, in persistent contact, divided by the normal
         force [m], at least 0. Default 0. Impacts do not use them.
@@ -98,7 +99,10 @@ class ContactLaw:
 
     @property
     def relative_stiffness(self) -> float:
-        """The stiffness relative to those of simultaneous contacts: 1 where one in newton is stated."""
+        """The stiffness relative to those of simultaneous contacts: 1 where one in newton is stated.
+
+        If all pairs of a scene have Hertz's law, that of their moduli takes its place.
+        """
         return 1.0 if isinstance(self.stiffness, ABSOLUTE) else self.stiffness
 
 

@@ -1,10 +1,15 @@
-"""How stiff a contact is: what an impact lasts, and its greatest force. The motion does not depend on it."""
+"""How stiff a contact is: what an impact lasts, and its greatest force.
+
+The motion does not depend on it, but the moduli of Hertz's laws divide an impact among several contacts.
+"""
 
 from __future__ import annotations
 
 import math
 from dataclasses import dataclass
 from typing import Any, cast
+
+import numpy as np
 
 from carom import arguments, checks
 from carom.fields import Number, NumberOrNone, Value, number
@@ -58,7 +63,8 @@ class Hertz:
     poisson : float or (float, float)
         Poisson's ratio nu, from 0 to .5. Default 0.3.
     radius : float, optional
-        R [m]. Default: that of the two shapes where they touch, which must be balls, or a ball and a plane.
+        R [m]. Default: by the two shapes where they touch, which must be balls, ellipsoids, or one of these and
+        a plane. An ellipsoid touches along an ellipse, by its two relative curvatures there.
     """
 
     young: Value[Any, Any] = Value(lambda name, value: _each(name, value, above=0.0, unit="Pa"))
@@ -103,3 +109,25 @@ def curvature_of(first, second) -> float:
         elif not hasattr(part, "normal"):  # no half-space
             return 0.0
     return total
+
+
+def is_point_contact(first, second) -> bool:
+    """Return whether two parts touch in a point whose curvatures are known: balls, ellipsoids and planes do."""
+    shapes = [type(getattr(part, "shape", None)).__name__ for part in (first, second)]
+    known = ("Sphere", "Ellipsoid")
+    return any(name in known for name in shapes) and all(
+        name in known or hasattr(part, "normal") for name, part in zip(shapes, (first, second))
+    )
+
+
+def curvatures_of(shape, across, normal) -> np.ndarray:
+    """Return the curvatures (2, 2) [1/m] of a ball or an ellipsoid along two tangents, where it has a normal.
+
+    The support function h(n) = |A n| of an ellipsoid has the radii of curvature as second derivatives along the
+    tangents: A^2/h - (A^2 n)(A^2 n)^T/h^3.
+    """
+    if type(shape).__name__ == "Sphere":
+        return np.eye(2) / shape.radius
+    square = np.diag([shape.a, shape.b, shape.c]) ** 2
+    h, along = np.sqrt(normal @ square @ normal), square @ normal
+    return np.linalg.inv(across.T @ (square / h - np.outer(along, along) / h**3) @ across)

@@ -21,11 +21,16 @@ from carom.scene.joints import Joint
 from carom.scene.materials import IMPACT_LAWS
 from carom.scene.restitution import Restitution
 from carom.scene.restitution import restitution as number_or_law
+from carom.scene.stiffness import Stiffness
 from carom.scene.values import MethodsOfScene, PartOfScene, in_scene
 
 
 def _index_or_word(name: str, value) -> int | str:
     return value if isinstance(value, str) else checks.integer(name, value, least=0)
+
+
+def _spring_or_none(name: str, value) -> Stiffness | None:
+    return None if value is None else checks.instance(name, value, (Stiffness,))
 
 
 def _check_coordinate(joint: Joint | Combination | Length, coordinate: int | str) -> None:
@@ -58,6 +63,8 @@ class Stop(PartOfScene):
     restitution : float or Restitution
         The speed of a law is that of the coordinate [rad/s or m/s].
     impact_law : str
+    stiffness : Stiffness or None
+        From which `Solution.impacts` has force, or torque, and duration; the motion does not depend on it.
     """
 
     joint: Joint | Combination | Length
@@ -66,6 +73,7 @@ class Stop(PartOfScene):
     upper: NumberOrNone = fields.number(None)
     restitution: Value[Any, Any] = number_or_law(0.0)
     impact_law: Word = fields.word(IMPACT_LAWS, "newton")
+    stiffness: Value[Any, Any] = Value(_spring_or_none, None)
 
     def __post_init__(self):
         _check_coordinate(self.joint, self.coordinate)
@@ -115,7 +123,8 @@ class RailContact(Stop):
     def __init__(self, index: int, joint: Joint):
         d: Any = joint.definition
         keep(self, index=index, name=f"{joint.child.name}-{joint.name}", joint=joint, coordinate=0)
-        keep(self, lower=0.0, upper=None, restitution=d.restitution, impact_law=d.impact_law)
+        keep(self, lower=0.0, upper=None, restitution=d.restitution)
+        keep(self, impact_law=d.impact_law, stiffness=None)
 
     @property
     def friction(self) -> Any:
@@ -138,6 +147,7 @@ class SceneStops(MethodsOfScene):
         upper: float | None = None,
         restitution: float | Restitution = 0.0,
         impact_law: str = "newton",
+        stiffness: Stiffness | None = None,
         coordinate: int | str = 0,
         name: str | None = None,
         replace: bool = False,
@@ -163,6 +173,10 @@ class SceneStops(MethodsOfScene):
         impact_law
             ``"newton"`` (default), ``"poisson"``, ``"stronge"`` or ``"moreau"``. A stop has no friction, so the
             laws differ only in multiple impacts.
+        stiffness
+            ``carom.Stiffness(k, exponent)`` of the stop [N/m^exponent], of an angle [N m/rad^exponent]. Then
+            `Solution.impacts` has the greatest force, or torque, and the duration of its impacts; the motion
+            stays as it is. Default None.
         coordinate
             Index of the coordinate of the joint. Default 0. Of a ball joint (`carom.joints.Spherical`) one of
             ``"rotation"``, ``"swing"`` (a cone) and ``"twist"``. Rotation and swing have upper limits, from 0
@@ -173,7 +187,7 @@ class SceneStops(MethodsOfScene):
         of = self._joint_or_combination(joint)
         return self._parts.make(
             Stop, "stop", name, replace, joint=of, coordinate=coordinate, lower=lower, upper=upper,
-            restitution=restitution, impact_law=impact_law,
+            restitution=restitution, impact_law=impact_law, stiffness=stiffness,
         )  # fmt: skip
 
     def _joint_or_combination(self, joint) -> Joint | Combination:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -14,6 +14,7 @@ from carom.scene.friction import FrictionLaw, isotropic
 from carom.scene.restitution import Restitution
 
 if TYPE_CHECKING:
+    from carom.impact.multiple.forces import ImpactForces
     from carom.impact.multiple.layout import CornerContacts
     from carom.model.laws import Laws
 
@@ -67,6 +68,31 @@ class CornerImpact:
     at_once: bool
     steps: int
     events: int
+    #: what was stated
+    _stated: dict[str, Any] = field(default_factory=dict, repr=False, compare=False)
+
+    def force(self, stiffness=None) -> ImpactForces:
+        """Return the forces of the contacts in time.
+
+        Parameters
+        ----------
+        stiffness : Stiffness or Hertz, or a sequence of k of them, optional
+            Of all contacts or of each, with one exponent. Default: those that were stated. The impact must have
+            been solved with their ratios and this exponent, because its result depends on them.
+
+        Returns
+        -------
+        carom.impact.ImpactForces
+
+        Raises
+        ------
+        TypeError, ValueError
+            If no stiffness in newton is stated, or the impact has no course in time: one contact problem, a
+            plastic event, blows one after another.
+        """
+        from carom.impact.multiple.forces import of_corner
+
+        return of_corner(self, stiffness)
 
 
 @arguments.known
@@ -79,7 +105,7 @@ def resolve_impacts(
     *,
     multiple: str = "simultaneous",
     stiffness=None,
-    exponent: float = 1.0,
+    exponent: float | None = None,
     rtol: float = LAYER_RTOL,
     tangential_restitution=0.0,
 ) -> CornerImpact:
@@ -112,10 +138,12 @@ def resolve_impacts(
         equally fast. This is fast, and exact for a row of balls with e = 1, but in other cases it depends on
         the order. ``"newton"``: one contact problem with Newton's law at each contact (Moreau 1988), or e = 0
         if that would increase the energy. This is the fastest, for crowds; `law` and `stiffness` are not used.
-    stiffness : array_like, shape (k,), optional
-        Stiffness kappa of the contacts; with ``exponent=1`` only ratios matter. Default: all equal.
+    stiffness : array_like, shape (k,), Stiffness, Hertz, or a sequence of k of them, optional
+        Stiffness kappa of the contacts, of which only ratios matter. Default: all equal. If `Stiffness` or
+        `Hertz` (with a radius) are given, they have one exponent, and `CornerImpact.force` is known.
     exponent : float
-        Exponent p of the normal law N = kappa depth^p, at least 1. Default 1; Hertz's law has 1.5.
+        Exponent p of the normal law N = kappa depth^p, at least 1. Default 1, or that of `stiffness`; Hertz's
+        law has 1.5.
     rtol : float
         Relative tolerance of velocities, within [1e-12, 1e-2]. Default 1e-8.
     tangential_restitution : float or array_like, shape (k,)
@@ -147,12 +175,15 @@ def resolve_impacts(
     divided among them.
     """
     from carom.impact.layout import AT_ONCE, OK
+    from carom.impact.multiple.forces import stated_stiffness
     from carom.impact.multiple.layout import (
         CAPPED,
+        FINAL_SLIP,
         MESSAGES,
         MULTIPLE,
         NO_RESULT,
         NOT_RESOLVED,
+        SIMULTANEOUS,
         MultipleSettings,
     )
     from carom.law.impact_laws import NUMBERS
@@ -165,12 +196,23 @@ def resolve_impacts(
     mu = _frictions(friction, k)
     e = _restitutions(restitution, np.maximum(-u[:, 0], 0.0))
     e_t = per_contact("tangential_restitution", tangential_restitution, k, least=-1.0, most=1.0)
-    kappa = per_contact("stiffness", 1.0 if stiffness is None else stiffness, k, above=0.0)
+    absolute = stated_stiffness("stiffness", stiffness, k)
+    if absolute is None:
+        kappa = per_contact("stiffness", 1.0 if stiffness is None else stiffness, k, above=0.0)
+    else:
+        kappa = absolute[0] / absolute[0].max()
+        if exponent not in (None, absolute[1]):
+            raise ValueError(
+                f"exponent must be that of stiffness, {absolute[1]:g}, or None, got {checks.shown(exponent)}"
+            )
+        exponent = absolute[1]
     numbers = codes("law", law, k, NUMBERS)
     settings = MultipleSettings(
         multiple=MULTIPLE[checks.choice("multiple", multiple, MULTIPLE)],
         rtol=checks.number("rtol", rtol, least=LEAST_LAYER_RTOL, most=GREATEST_LAYER_RTOL),
-        exponent=checks.number("exponent", exponent, least=1.0, most=4.0),
+        exponent=checks.number(
+            "exponent", 1.0 if exponent is None else exponent, least=1.0, most=4.0
+        ),
     )
     laws = stated_laws(mu, e, numbers, e_t, kappa)
     code, out = solve(W, np.ascontiguousarray(u), laws, settings)
@@ -193,6 +235,15 @@ def resolve_impacts(
         at_once=bool(summary["marks"] & AT_ONCE),
         steps=int(summary["steps"]),
         events=int(summary["events"]),
+        _stated={
+            "W": W,
+            "velocity": u,
+            "laws": laws,
+            "settings": settings,
+            "kappa": kappa,
+            "stiffness": stiffness,
+            "course": settings.multiple == SIMULTANEOUS and not summary["marks"] & FINAL_SLIP,
+        },
     )
 
 

@@ -44,6 +44,12 @@ def resolve_multiple(k, contacts, laws, settings, workspace, out):
             for a in range(m):
                 blow.contacts.contact[a].restitution = 0.0
         _together(scale, settings, laws, workspace)
+        if (
+            ends
+            and not together
+            and not fastest(m, blow.contacts.u) > limits.NO_RESTITUTION * scale
+        ):
+            blow.result.summary[0].marks &= ~PLASTIC  # it has ended: what is left is negligible
         take(k, contacts, m, blow, out)
         count += 1
         if ends or workspace.work.clock[0].left < 0:
@@ -145,18 +151,26 @@ def strikes_at_once(k, contacts):
 
 
 @kernel
+def fastest(k, u):
+    """Return the greatest speed of approach of k contacts."""
+    most = 0.0
+    for i in range(k):
+        most = max(most, -u[3 * i])
+    return most
+
+
+@kernel
 def choose(k, contacts, every, least, blow, out):
     """Gather the contacts of the next impact; return their number, 0 if none approaches faster than `least`.
 
     They belong to the pair that approaches fastest and to pairs that approach equally fast; if `every`, they
     are all contacts. `out` has the velocities.
     """
-    given, chosen, u, fastest = contacts.contact, blow.contacts.contact, out.velocity, 0.0
-    for i in range(k):
-        fastest = max(fastest, -u[3 * i])
-    if not fastest > least:
+    given, chosen, u = contacts.contact, blow.contacts.contact, out.velocity
+    most = fastest(k, u)
+    if not most > least:
         return 0
-    m, equal = 0, (1.0 - limits.GROUP_ERROR) * fastest
+    m, equal = 0, (1.0 - limits.GROUP_ERROR) * most
     for i in range(k):
         strikes = every
         for j in range(0 if every else k):

@@ -93,6 +93,7 @@ LATER_OF: dict[str, dict[str, Any]] = {
     "Motor": {"start": 0.0},
     "JointFriction": {"mu": None, "radius": None, "length": None},
     "Material": {"young": None, "poisson": 0.3},
+    "Stop": {"stiffness": None},
 }
 ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 

@@ -2,7 +2,12 @@
 
 from __future__ import annotations
 
+import numpy as np
+
 from carom.arguments import known
+from carom.impact import Impact, ImpactForce, ImpactForces
+from carom.impact.multiple.api import CornerImpact
+from carom.scene.stiffness import Stiffness
 from carom.visual.plots import figure
 from carom.visual.plots import style as looks
 
@@ -21,12 +26,14 @@ def impact_force(
     """Draw the force of one impact over time, by the stiffness of its contact, and the depth.
 
     The dotted line is the end of compression. What is left of the depth at the end is the dent of an impact
-    that does not give all back.
+    that does not give all back. Of contacts that strike together all normal forces are drawn, with their
+    numbers.
 
     Parameters
     ----------
-    solution : Solution, Impact or carom.impact.ImpactForce
-        A run, a single impact (`carom.resolve_impact`), or its force.
+    solution : Solution, Impact, CornerImpact, carom.impact.ImpactForce or carom.impact.ImpactForces
+        A run, a single impact (`carom.resolve_impact`), one of several contacts (`carom.resolve_impacts`), or
+        the force of one.
     k : int
         Index of the impact of a run; negative indices count from the end. Default 0.
     stiffness : Stiffness or Hertz, optional
@@ -53,43 +60,60 @@ def impact_force(
     """
     force = _force(solution, k, stiffness)
     time, short = figure.readable(force.duration, "s")
-    strong, newton = figure.readable(force.peak_force, "N")
+    strong, newton = figure.readable(float(np.max(force.peak_force)), "N")
     length, unit = figure.readable(float(force.depth.max()), "m")
     only = figure.only(panel, ("force", "depth"), ax)
     with figure.drawing(
         figure.Canvas(ax, figsize, style), 2, (looks.COLUMN, 3.2), only=only
     ) as axes:
         upper, lower = axes
-        names, hues = ("n", "t1", "t2"), (looks.BLUE, looks.RED, looks.GREEN)
-        parts = (force.normal_force, *force.friction_force.T)
-        for i in (0, *(i for i in (1, 2) if abs(parts[i]).max() > 0.0)):
-            upper.plot(
-                time * force.t, strong * parts[i], color=hues[i], label=f"$F_{{{names[i]}}}$"
-            )
+        for values, depth, colour, label in _curves(force):
+            upper.plot(time * force.t, strong * values, color=colour, label=label)
+            if depth is not None:
+                lower.plot(time * force.t, length * depth, color=colour)
         upper.axhline(0.0, color=looks.BLACK, lw=0.4)
         upper.set(ylabel=f"force [{newton}]")
         upper.legend(loc="center left", bbox_to_anchor=(1.0, 0.5))
-        lower.plot(time * force.t, length * force.depth, color=looks.BLUE)
         lower.set(
             ylabel=f"depth [{unit}]", xlabel=f"time [{short}]", xlim=(0, time * force.duration)
         )
-        for one in axes:
-            one.axvline(time * force.compression_time, color=looks.GREY, lw=0.6, ls=":")
+        if isinstance(force, ImpactForce):
+            for one in axes:
+                one.axvline(time * force.compression_time, color=looks.GREY, lw=0.6, ls=":")
     return axes if only is None else axes[only]
 
 
+def _curves(force) -> list[tuple]:
+    """Return force, depth (None where it is drawn already), colour and label of each curve."""
+    hues = (looks.BLUE, looks.RED, looks.GREEN, looks.ORANGE, looks.SKY, looks.PURPLE, looks.BLACK)
+    if isinstance(force, ImpactForces):
+        numbers = range(force.normal_force.shape[1])
+        parts = [(force.normal_force[:, i], force.depth[:, i]) for i in numbers]
+        return [(N, d, hues[i % len(hues)], f"$F_{{{i}}}$") for i, (N, d) in enumerate(parts)]
+    parts = (force.normal_force, *force.friction_force.T)
+    drawn = [(parts[0], force.depth, hues[0], "$F_{n}$")]
+    for i, name in ((1, "t1"), (2, "t2")):
+        if abs(parts[i]).max() > 0.0:
+            drawn.append((parts[i], None, hues[i], f"$F_{{{name}}}$"))
+    return drawn
+
+
 def _force(solution, k, stiffness):
-    """Return the force of a single impact, or of impact k of a run."""
-    from carom.impact import Impact, ImpactForce
+    """Return the force of a single impact, of one of several contacts, or of impact k of a run."""
     from carom.results.stiff_impacts import stiffness_of
 
-    if isinstance(solution, ImpactForce):
+    if isinstance(solution, (ImpactForce, ImpactForces)):
         return solution
-    if isinstance(solution, Impact):
+    if isinstance(solution, (Impact, CornerImpact)):
         return solution.force(stiffness)
     figure.need_bodies(solution, "impact_force")
     figure.impact(solution, k)
-    record = solution.impacts[int(k)]
-    return record.force(
-        stiffness_of(solution, int(record.contact)) if stiffness is None else stiffness
-    )
+    record, rows = solution.impacts[int(k)], solution._written.impact
+    if record.together > 1:
+        return solution.impact_forces(int(k), stiffness)
+    if stiffness is None:
+        place = range(len(rows))[int(k)]
+        own = rows[place : place + 1]
+        stated = stiffness_of(solution, int(record.contact), own)
+        stiffness = None if stated is None else Stiffness(float(np.ravel(stated[0])[0]), stated[1])
+    return record.force(stiffness)
