@@ -103,7 +103,7 @@ def _stiffest(known: PairTable, more: bool) -> float:
 
     If `more` pairs may come, all laws count.
     """
-    used = known.laws if more else [known.laws[k] for k in np.unique(known.law).tolist()]
+    used = known.laws if more else [known.laws[k] for k in sorted(set(known.law.tolist()))]
     moduli = [law.stiffness.modulus for law in used if isinstance(law.stiffness, Hertz)]
     return max(moduli) if moduli and len(moduli) == len(used) else 0.0
 
