@@ -24,7 +24,7 @@ CENTRAL = (
 def remarks(rows, run) -> tuple[Remark, ...]:
     """Return a sentence for each pair with Hertz's law whose impacts are as short as a wave through a body."""
     pairs, scene, said = run.pairs, run.scene, []
-    for number in np.unique(rows["contact"][rows["contact"] < len(pairs.body)]).tolist():
+    for number in sorted({c for c in rows["contact"].tolist() if c < len(pairs.body)}):
         stiffness = pairs.laws[pairs.law[number]].stiffness
         if not isinstance(stiffness, Hertz):
             continue
