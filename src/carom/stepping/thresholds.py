@@ -18,7 +18,6 @@ START_ROOM = 1e-3  #: size of the body: room of a body that starts from rest: do
 BALL_SLACK = 1e-6  #: radius: growth of balls, so that balls in contact overlap
 SPEED_UP = 2.0  #: greatest speed of bodies that may meet: greatest speed of one of them in the step
 NEAR_REACH = 1.5  #: greatest speed of points of near bodies: their mean speed: a ball begins to roll with 1.43
-LONG_PART = 0.5  #: ball of the body: arm about an axis: bodies with a shorter one are long
 MEETING_STEPS = 8.0  #: steps: contacts are made for bodies that may meet so soon, near their balls
 THIN_PART = 1.0 / 32.0  #: ball of the body: displacement in a piece that is allowed, however thin the body
 SEARCH_GROWTH = 4.0  #: search distance: after points were missed

@@ -5,8 +5,8 @@ its points. In a set of bodies that meet, none moves faster than twice the great
 throws a light one: then a body leaves its ball, which is detected, and the step is repeated with more room. So
 islands are exact: bodies of different islands have not met.
 
-Balls around long bodies overlap where the bodies are far from each other. So two convex solids are an island
-only if they are nearer than their points can move: the reach of both, which counts their rotation, too.
+Balls overlap where bodies are far from each other, the more so around long ones. So two convex solids are an
+island only if they are nearer than their points can move: the reach of both, which counts their rotation, too.
 """
 
 from __future__ import annotations
@@ -24,7 +24,6 @@ from carom.stepping.islands.layout import ASLEEP, FLIES, IN_ISLAND
 from carom.stepping.islands.order import sort_contacts, sort_pairs
 from carom.stepping.thresholds import (
     BALL_SLACK,
-    LONG_PART,
     MEETING_STEPS,
     NEAR_REACH,
     SPEED_UP,
@@ -163,7 +162,7 @@ def stay_apart(system, now, length, work, islands, p):
     """Return whether the bodies of pair p are farther from each other than their points move in the step."""
     i, j, bodies, need = islands.pair[0, p, 0], islands.pair[0, p, 1], system.bodies, 0.0
     q = first_contact(islands, i, j)
-    if q < 0 or not (is_long(bodies[i]) or is_long(bodies[j])):
+    if q < 0:
         return False
     for b in (i, j):
         reach = reach_of(system, b, length, islands)
@@ -177,12 +176,6 @@ def stay_apart(system, now, length, work, islands, p):
     for b in (i, j):
         work.body[b].reach = reach_of(system, b, length, islands)
     return True
-
-
-@kernel
-def is_long(body):
-    """Return whether a body is long: its ball is far larger than it about one of its axes."""
-    return min(body.arm[0], min(body.arm[1], body.arm[2])) < LONG_PART * body.ball
 
 
 @kernel
