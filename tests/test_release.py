@@ -73,8 +73,7 @@ def test_the_conda_recipe_is_that_of_the_project():
 
 def test_each_page_of_the_reference_says_whether_it_is_stable():
     pages = [path for path in (ROOT / "docs" / "api").glob("*.rst") if path.stem != "index"]
+    pages = [path for path in pages if not path.stem.startswith("carom.")]  # made by Sphinx
     said = {path.stem: path.read_text(encoding="utf-8").splitlines()[3] for path in pages}
     marks = {f":doc:`{word} <../support>`." for word in ("Stable", "Experimental")}
-    assert {
-        name for name in said if said[name] not in marks and not name.startswith("carom.")
-    } == set()
+    assert {name for name in said if said[name] not in marks} == set()

@@ -398,7 +398,7 @@ class Run:
         return Status.INACCURATE if bad else status
 
     def go_back(self) -> None:
-        """Return to the start of the step in which the run was interrupted."""
+        """Return to the start of the step, or of the piece of one, in which the run was interrupted."""
         islands, active, step, search = self.islands, self.active, self.work.step, self.work.search
         start = islands.single
         if islands.apart:

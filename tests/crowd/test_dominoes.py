@@ -24,7 +24,7 @@ def row(n, apart):
 @verifies("simulate(rtol=)", "a row of dominoes by two tolerances", "invariant")
 @pytest.mark.parametrize(("n", "end"), [(8, 0.5), (10, 0.5), (12, 0.58)])
 def test_a_row_moves_from_event_to_event(n, end):
-    # 32 to 56 points on the floor, of bodies that are groups of their own until they meet. Two tolerances
+    # 32 to 48 points on the floor, of bodies that are groups of their own until they meet. Two tolerances
     # agree to 1e-11 m; time-stepping steps, which it took before, were .4 mm off. Fourteen may touch at 145
     # points and more at once, which is a crowd: in one of 31 runs by nearby tolerances
     places = [carom.simulate(row(n, 0.02), end, rtol=rtol, save_at=end) for rtol in (1e-8, 1e-10)]

@@ -238,9 +238,13 @@ def test_the_room_of_arrays_changes_nothing():
 
 
 def test_what_hardly_moves_costs_few_steps():
-    # A row of 15 boxes that touch, or nearly: 390 to 444 trial steps in eight runs that differ by round-off.
-    # While a pair was unsure if another of two parallel faces had more room at the end, 1 333 to 291 574.
-    one = crowds.case(950041)
-    with warnings.catch_warnings():
-        warnings.simplefilter("ignore", carom.AccuracyWarning)
-        assert carom.simulate(one.scene, one.duration).stats["trial_steps"] < 4500
+    # A row of 15 boxes that touch, or nearly. Eight runs that differ by a unit in the last place of gravity take
+    # 397 to 2 942 trial steps, six of them 397 to 427. While a pair was unsure if another of two parallel faces
+    # had more room at the end, they took 1 333 to 204 945, half of them 27 000 and more.
+    one, taken = crowds.case(950041), []
+    for units in range(8):
+        one.scene.gravity = np.array(one.scene.gravity) * (1.0 + units * 2.3e-16)
+        with warnings.catch_warnings():
+            warnings.simplefilter("ignore", carom.AccuracyWarning)
+            taken.append(carom.simulate(one.scene, one.duration).stats["trial_steps"])
+    assert np.median(taken) < 4000

@@ -150,7 +150,7 @@ def scenes() -> dict:
 
 def contact_scenes() -> dict:
     """Return scenes with persistent contact, and the duration of each [s]."""
-    return {"rest": (_thrown(), 0.4), "stack": (_pile(2), 0.2), "heap": (_pile(9), 0.2)}
+    return {"rest": (_thrown(), 0.4), "stack": (_pile(2), 0.2), "heap": (_pile(14), 0.2)}
 
 
 def _thrown():

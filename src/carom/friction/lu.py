@@ -6,7 +6,6 @@ from carom._compiled.decorators import kernel
 
 #: columns with numbers in the rows that are subtracted are listed where they are fewer than one in so many
 FEW_COLUMNS = 4
-MANY_ROWS = 4  # rows: from here on sums of four are made at once
 
 
 @kernel
@@ -103,13 +102,13 @@ def subtract_at(A, k, columns, b):
 def substitute(A, n, pivot, x):
     """Solve with the factors: replace x[:n] by the solution.
 
-    Large systems are solved four rows at a time: a sum waits for its last term, but four do not wait for
+    Rows are solved four at a time: a sum waits for its last term, but four do not wait for
     each other.
     """
     for k in range(n):
         row = pivot[k]
         x[k], x[row] = x[row], x[k]
-    whole = n - n % 4 if n > MANY_ROWS else 0
+    whole = n - n % 4
     for first in range(0, whole, 4):
         subtract_products(A, first, (0, first), x)
         for i in range(first + 1, first + 4):

@@ -27,9 +27,9 @@ from carom.model.actions import (
     MODE_OPEN,
 )
 from carom.persistent.finish import (
-    ENDS,
-    STAYS,
-    TURNS,
+    SLIP_CHANGES,
+    SLIP_STAYS,
+    SLIP_TURNS,
     check_end,
     copy_to_stage,
     note_modes,
@@ -154,25 +154,30 @@ def step_group(model, data, method, label, h):
 def step_stiffly(model, data, method, label, h, start):
     """Step one group by the implicit member, or in short steps by the closing one; return as `step_group`.
 
-    Where slip turns and the error of a short closing step is not allowed, the implicit member makes it, and the
-    closing one if that has no solution. `start` has the greatest acceleration and the powers there.
+    A short step is closed first. The implicit member follows where there is no such end, or where slip turns
+    and the error of the closing step is not allowed; a closing step is the last, unless there was none. `start`
+    has the greatest acceleration and the powers there.
     """
     search, order, (push, powers) = data.work.search[0], model.controls.order, start
     applied, friction = 0.0, 0.0
     falls = 0.5 * h * h * max(push, greatest_first(model, data, label))
     short = order > 0 and falls <= closing_size(model, data, label)
-    for turn in range(0 if short else 1, 3):
-        closes = turn != 1
+    lost = False
+    for attempt in range(0 if short else 1, 3):
+        closes = attempt != 1
+        if lost and closes:
+            break
         A, E = (method.closing, method.closing_E) if closes else (method.stiff, method.stiff_E)
         first_modes(model.system, data, label)
         ended, does, applied, friction = end_implicitly(model, data, (A, closes), label, h, powers)
         if not ended:
+            lost = lost or closes
             continue
-        does = ENDS if opens(data, label) else does
-        changes = order > 0 and does != STAYS
+        does = SLIP_CHANGES if opens(data, label) else does
+        changes = order > 0 and does != SLIP_STAYS
         if changes or not closes:
             note_errors(model, data, E, label, 0, h)
-        if turn == 0 and does == TURNS and not is_allowed(model, data, label):
+        if attempt == 0 and does == SLIP_TURNS and not is_allowed(model, data, label):
             continue
         if not closes:
             search.order = min(order, STIFF_ORDER)
@@ -230,14 +235,14 @@ def end_implicitly(model, data, method, label, h, powers):
     k, applied, friction = implicit_member(model, data, method, label, h, powers)
     (A, closes), member = method, data.group.bodies.member
     if k == 0:
-        return False, STAYS, applied, friction
+        return False, SLIP_STAYS, applied, friction
     if not closes:
         note_left(model, data, k)
     does = note_modes(model, data, k, h)
     joined, driven = write_end(model, data, label, k)
     applied += driven
     if not joined:
-        return False, STAYS, applied, friction
+        return False, SLIP_STAYS, applied, friction
     if closes and model.controls.order > 0:
         note_undetermined(model.system, data, k, label)
         copy_to_stage(members(data.work, label, member), data.work.trial, data.group, data.work)

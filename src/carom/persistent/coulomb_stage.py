@@ -41,8 +41,8 @@ def solve_stage(k, hg, known, group):
     """Write the forces of a stage to `p`; return whether they exist.
 
     `u` has u~, `c` the accelerations without forces. With hg = 0 the law is that of accelerations: slip goes on
-    along `heading`, what has no velocity slips the way it accelerates. `known` says whether `p` has the forces
-    of nearly this place, shared, and the error that forces may have.
+    along `heading`, what has no velocity slips the way it accelerates. `known` is a pair: whether `p` has the
+    forces of the last iteration of the pose, and the part of the greatest acceleration that may be left.
     """
     for turn in range(LOAD_ROUNDS):
         if not forces_of_stage(k, hg, known, group):

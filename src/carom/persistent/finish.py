@@ -72,6 +72,7 @@ from carom.persistent.stops import locates, note_left
 from carom.persistent.thresholds import (
     DISC_ERROR,
     EQUATION_ERROR,
+    FAR_TURN,
     FEW_REST,
     FRICTION_LIMIT,
     NO_MARGIN,
@@ -79,8 +80,8 @@ from carom.persistent.thresholds import (
     TURNED,
 )
 
-#: slip in a step
-STAYS, TURNS, ENDS = range(3)
+#: slip in a step: goes on as it is; turns; begins, ends or turns far
+SLIP_STAYS, SLIP_TURNS, SLIP_CHANGES = range(3)
 
 
 @unit
@@ -120,9 +121,10 @@ def note_modes(model, data, k, h):
 
     What is on its disc at rest sticks: whether it slips is seen at the start of the next step. A slip that no
     friction could have stopped in the step goes on, whatever round-off has left of its force in a short step.
-    Return what slip does: STAYS, TURNS, or ENDS, if it begins, ends or turns by more than 60 degrees.
+    Return what slip does: SLIP_TURNS if its direction changes, SLIP_CHANGES if it begins or ends, or its
+    direction changes by more than 60 degrees, else SLIP_STAYS.
     """
-    active, group, controls, does = data.active, data.group, model.controls, STAYS
+    active, group, controls, does = data.active, data.group, model.controls, SLIP_STAYS
     push = greatest_load(k, group)
     for i in range(k):
         closed_point, u, p = group.closed[i], group.u, group.p
@@ -141,8 +143,9 @@ def note_modes(model, data, k, h):
         slides = group.problem.kind[i] == SLIDING and slip > 0.0
         d1, d2 = u[3 * i + 1] / slip if slides else 0.0, u[3 * i + 2] / slip if slides else 0.0
         if group.problem.mu[i] > 0.0:
-            turn, both = math.hypot(d1 - b1, d2 - b2), slides == (b1 != 0.0 or b2 != 0.0)
-            does = max(does, ENDS if turn > 1.0 or not both else TURNS if turn > TURNED else STAYS)
+            turn, same = math.hypot(d1 - b1, d2 - b2), slides == (b1 != 0.0 or b2 != 0.0)
+            far = turn > FAR_TURN or not same
+            does = max(does, SLIP_CHANGES if far else SLIP_TURNS if turn > TURNED else SLIP_STAYS)
         store_slip(model.system, active, closed_point, d1, d2, slip if slides else 0.0)
         if not is_torque(closed_point) and group.problem.mu[i] > 0.0:
             next_mode = MODE_SLIP if group.problem.kind[i] == SLIDING else MODE_STICK

@@ -172,9 +172,8 @@ def implicit_stage(model, data, label, s, hg, closes):
         lost, struck = iterations[0], False
         for i in range(k):
             group.closed[i].passes = 0
-        if (closes and lost >= budget(k)) or not solve_beyond(
-            model, data, (k, k == before, rough), hg, closes
-        ):
+        known = k == before, rough
+        if (closes and lost >= budget(k)) or not solve_beyond(model, data, k, known, hg, closes):
             if not closes:
                 return -1, 0.0, 0.0
             solve_impulses(model, data, k, hg)
@@ -195,18 +194,16 @@ def implicit_stage(model, data, label, s, hg, closes):
 
 
 @kernel
-def solve_beyond(model, data, points, hg, closes):
+def solve_beyond(model, data, k, known, hg, closes):
     """Solve a stage, beyond stops that are to be located as if slip went on; return whether this is done.
 
-    `points` are their number, whether they have forces of the last iteration of the pose, and the error that
-    those of this one may have.
+    What is `known` of its forces is as in `solve_stage`.
     """
-    k = points[0]
-    if not solve_stage(k, hg, (points[1], points[2]), data.group):
+    if not solve_stage(k, hg, known, data.group):
         return False
     if not closes and locates(model, data):
         while pass_stops(model, data, k, hg):
-            if not solve_stage(k, hg, (True, points[2]), data.group):
+            if not solve_stage(k, hg, (True, known[1]), data.group):
                 return False
     return True
 

@@ -11,7 +11,7 @@ LOAD_PROBE = 1e-3  #: friction that holds a joint: a part of it, for the derivat
 #: speed that forces give in a stage: a joint slides, and does not just give way
 SLIDE_OF_FORCES = 3.0
 LOAD_LEFT = 1e-9  #: load: the same for an error that more rounds do not make less
-POSE_SHARE = 1e-4  #: velocities: change by an iteration of a stage: error of its forces in the next one
+POSE_SHARE = 1e-4  #: change of velocities by an iteration of a stage: error of forces in the next one
 LAST_CHANGE = 1e-14  #: velocities: change by an iteration that is the last
 STAGE_CHANGE = 1e-10  #: velocities: after all iterations: a stage that changes by more has no solution
 FRICTION_LIMIT = 1.0 - 1e-6  #: greatest friction: less is within the cone; a stage leaves 3e-9 of a line
@@ -25,6 +25,7 @@ STAYING_SPEED = 1e-6  #: speed that forces give in a step: away from a surface: 
 STIFF_SLIP = 1.5  #: speed of slip: change by friction in a step above which its direction is stiff
 SLIP_COSINE = 0.5  #: cosine of the angle: least between directions of slip in a step
 MOST_BOUNCES = 50  #: 1: bounces with the e of their own speed, before those that a formula adds up
+FAR_TURN = 1.0  #: 1: change of the direction of slip, of 60 degrees, that the implicit member does not follow
 TURNED = 1e-3  #: 1: change of the direction of slip in a closing step that is no change of friction
 STOPPED_SLIP = 1e-3  #: slip at the start: with less at the end the direction is that of the start: it stops
 FALLS = 100.0  #: fall through the size: an error of velocity counts so long; what moves slower is at rest

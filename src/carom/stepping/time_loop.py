@@ -117,7 +117,7 @@ def step_apart(model, data, method, islands) -> int:
             parts.enter(system, own.active, data.active, own.work, islands, data.clocks[0])
             note_scale(system, model.controls, state, own.work)
             begin_count(model.controls, own.work)
-            parts.choose(system, model.controls, own.active, plan.number, own.work)
+            parts.choose(system, model.controls, own.active, plan.pieces, own.work)
         controls = local_controls(model.controls, step)
         part = by_reference(Model(by_reference(system), controls))
         code = move_island(part, own, method)
@@ -241,7 +241,7 @@ def retry_apart(model, data, islands, code):
     if again:
         islands.plan[0].widen *= 2.0
     elif model.controls.hold == 1 and may_be_whole(code, data.active):
-        again = parts.give_up(model.controls, islands, islands.plan[0].number, data.work)
+        again = parts.give_up(model.controls, islands, islands.plan[0].pieces, data.work)
         if again:
             bodies = parts.bodies_of_present(islands)
             note_whole(model.system, model.controls, step, code, bodies, data.watch[0])

@@ -178,7 +178,7 @@ def _same_coupling(k, blow, count, i, j):
 def _sum_differences(k, blow, count, a, c):
     """Write the differences of rows `a` and `c` of W, summed over each class.
 
-    The class of these rows has its members that leave it, too.
+    That of the class of these rows includes contacts that are leaving it.
     """
     contact, row, other, sums = blow.contacts.contact, blow.clean[a], blow.clean[c], blow.sums
     for q in range(3 * count):

@@ -51,14 +51,14 @@ class Packed(NamedTuple):
 
 
 class Checkpoint(NamedTuple):
-    """A run between two steps."""
+    """A run between two steps, or pieces of one."""
 
     found: dict[str, int]  # the sizes of what grows
     arrays: Mapping[str, np.ndarray | Packed]  # by name, copies
 
 
 def capture(run) -> Checkpoint | None:
-    """Return the checkpoint of a run; None in the middle of a step."""
+    """Return the checkpoint of a run; None in the middle of a step, or of a piece of one."""
     step, search, islands = run.work.step[0], run.work.search[0], run.islands
     inside = step.spent != 0.0 or step.paused != 0 or search.pending != 0
     if inside or (islands.plan[0].planned != 0):

@@ -33,7 +33,7 @@ PLAN = [
     ("fixed", "i8"),  # contacts from the start, in their order; others follow by their bodies
     ("noted", "i8"),  # pairs of bodies, at the beginning of `pair`, that need contacts
     ("joined", "i8"),  # the island of the joined and loaded bodies, -1 for none
-    ("number", "i8"),  # finished pieces of steps (`carom.stepping.islands.pieces`)
+    ("pieces", "i8"),  # finished pieces of steps (`carom.stepping.islands.pieces`)
     ("piece", "f8"),  # longest length of the next piece, 0 for the whole step
     ("done", "f8"),  # time of the present step in finished pieces
     ("busy", "i8"),  # most trial steps in this piece of an island of several groups

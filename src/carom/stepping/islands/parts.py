@@ -47,7 +47,7 @@ def begin_step(system, active, now, clocks, work, islands):
         if contact.other >= 0:
             contact.other = local(islands, contact.other)
         islands.contact_states[slot] = active.contact_states[c]
-        if contact_state.step != plan.number:  # in the last piece nothing was near
+        if contact_state.step != plan.pieces:  # in the last piece nothing was near
             contact_state.leaving = 0
     plan.kept = 0
     for i in range(active.count[0]):
@@ -162,7 +162,7 @@ def slot_of(islands, i, active_point):
 
 @kernel
 def choose(part, controls, active, number, work):
-    """Note whether an island moves as a crowd in step `number`: it is large, or has failed as events lately.
+    """Note whether an island moves as a crowd in piece `number`: it is large, or has failed as events lately.
 
     With tolerances it is large if it cannot afford to move one of its groups from event to event, which takes
     factors of a full matrix W. With given steps it is large if bodies lie on each other at many points, two per
@@ -204,7 +204,7 @@ def bodies_of_present(islands):
 
 @kernel
 def give_up(controls, islands, number, work):
-    """Give the bodies of the island time-stepping steps, `number` and some more; return False if they have.
+    """Give the bodies of the island time-stepping steps, piece `number` and more; return False if they have.
 
     The number doubles with each call in a row: 1, 2, 4, ... 128.
     """
@@ -257,7 +257,7 @@ def end_step(system, active, now, work, islands):
     for slot in range(plan.used):
         contact_state = active.contact_states[islands.which[slot]]
         active.contact_states[islands.which[slot]] = islands.contact_states[slot]
-        contact_state.step = plan.number + 1
+        contact_state.step = plan.pieces + 1
     for i in range(plan.kept):
         active.points[i] = islands.points[1, i]
     active.count[0] = plan.kept

@@ -35,7 +35,7 @@ def end_piece(grid, controls, clock, length, islands):
         return True
     _, whole = begin_and_length(grid, controls.duration, clock.step)
     plan = islands.plan[0]
-    plan.number += 1
+    plan.pieces += 1
     if plan.busy >= BUSY_TRIALS:
         plan.piece = 0.5 * length
     elif plan.busy <= CALM_TRIALS:
