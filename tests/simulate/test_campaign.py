@@ -239,7 +239,7 @@ def test_the_room_of_arrays_changes_nothing():
 
 def test_what_hardly_moves_costs_few_steps():
     # A row of 15 boxes that touch, or nearly. Eight runs that differ by units in the last place of gravity take
-    # 397 to 2 942 trial steps, six of them 397 to 427. While a pair was unsure if another of two parallel faces had
+    # 397 to 2 942 trial steps, six of them 397 to 427. While a pair was unsure if the other of two faces had
     # more room at the end, they took 1 333 to 204 945, half of them 27 000 and more.
     one, taken = crowds.case(950041), []
     for units in range(8):
