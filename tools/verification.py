@@ -182,8 +182,8 @@ another question: [validated](#validated) has the comparisons with measurements.
 A test makes many comparisons, and may have many cases: its row has the error that was nearest to what was
 asked. Errors are absolute, in SI units, or relative to the right value (*rel.*). An error of 0 where 0 was
 asked means equal numbers. Right values come from a *closed form*; an *own integration*, a computation of ours
-that is no part of carom, such as SciPy's integrators or a quadrature; an *other program*; a *publication*; or an *invariant*:
-what a motion must keep, or two descriptions of one thing.
+that is no part of carom, such as SciPy's integrators or a quadrature; an *other program*; a *publication*; or
+an *invariant*: what a motion must keep, or two descriptions of one thing.
 """
 VALIDATED = """\
 ## Validated
