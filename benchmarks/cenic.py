@@ -116,12 +116,12 @@ def main() -> None:
     if not (given.keep or FEW):
         measure("carom")
     head = ["error", "carom, rtol 1e-4", "carom, 1e-8", "CENIC, accuracy 1e-3", "CENIC, 1e-8"]
-    report("cenic", "Error got at an accuracy asked", head, rows(), NOTES)
+    report("cenic", "Error got at an accuracy asked", head, rows(), NOTES, timing="")
     with style.style():
         style.write(draw(), str(OUT / "cenic.png"))
 
 
-NOTES = "In brackets the time of the run, once, both on the machine of the first line."
+NOTES = "In brackets the processor time of the run, once, both on the machine of the first line."
 
 if __name__ == "__main__":
     main()

@@ -17,6 +17,7 @@ __all__ = [
 
 OUT = Path(os.environ.get("CAROM_BENCH_OUT", Path("out") / "benchmarks"))
 ROUNDS = measure.ROUNDS
+TIMING = f"processor time, medians of {ROUNDS} rounds (quartiles)"
 #: to try the scripts out: fewer and smaller cases (`python benchmarks/all.py --few`)
 FEW = os.environ.get("CAROM_BENCH_FEW", "") not in ("", "0")
 
@@ -46,14 +47,19 @@ def decades(ax) -> None:
     ax.yaxis.set_minor_formatter(NullFormatter())
 
 
-def machine() -> str:
-    """Return one line: machine, versions, and how times are taken."""
-    return f"{machine_line()}; processor time, medians of {ROUNDS} rounds (quartiles)"
+def report(
+    name: str,
+    title: str,
+    head: list[str],
+    rows: list[list[str]],
+    notes: str = "",
+    timing: str = TIMING,
+) -> None:
+    """Print a Markdown table and write it to ``out/benchmarks/<name>.md``.
 
-
-def report(name: str, title: str, head: list[str], rows: list[list[str]], notes: str = "") -> None:
-    """Print a Markdown table and write it to ``out/benchmarks/<name>.md``."""
-    lines = [f"## {title}", "", f"{machine()}.", ""]
+    `timing` says how times were taken; where it is empty, the notes say it.
+    """
+    lines = [f"## {title}", "", f"{machine_line()}{timing and '; '}{timing}.", ""]
     lines += ["| " + " | ".join(head) + " |", "| " + " | ".join("---" for _ in head) + " |"]
     lines += ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
     lines += ["", notes.strip(), ""] if notes else [""]

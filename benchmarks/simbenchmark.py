@@ -147,7 +147,8 @@ def main() -> None:
     warnings.simplefilter("ignore", carom.AccuracyWarning)
     if not (given.keep or FEW):
         measure(given.tasks)
-    report("simbenchmark", "SimBenchmark", ["mean squared error", "carom", *TOOLS], rows(), NOTES)
+    head = ["mean squared error", "carom", *TOOLS]
+    report("simbenchmark", "SimBenchmark", head, rows(), NOTES, timing="")
     with style.style():
         style.write(draw(), str(OUT / "simbenchmark.png"))
 

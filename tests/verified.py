@@ -23,8 +23,10 @@ from numpy.typing import ArrayLike
 #: where a right value may come from; what follows a colon says which one
 SOURCES = (
     "closed form",  # a formula for the result
-    "own integration",  # another program of ours, in the test: SciPy's integrators, quadrature, dense matrices
-    "other program",  # of others: MuJoCo, Adams, coal
+    # a program of ours that is no part of carom, in the test or with its numbers there: SciPy's integrators,
+    # quadrature, dense matrices
+    "own integration",
+    "other program",  # of others: MuJoCo, Adams, coal, SciPy's Rotation
     "publication",  # numbers or formulas that others have published
     "invariant",  # what the motion must keep: energy, momentum, a symmetry, a bound
     "experiment",  # a measurement: its rows are of the validation

@@ -42,7 +42,8 @@ NO_ROW = {
     "studies.identify.Recording": "data", "studies.identify.State": "data",
     "studies.identify.Parameter": "data",
 }  # fmt: skip
-#: arguments that name, place, draw or measure a part, or say how a run is saved
+#: arguments that name, place, draw or measure a part, bound or time it, or say how a run is computed and saved;
+#: numbers of the laws of contacts, whose laws have rows, and words, of which each has one
 PLAIN = {
     "self", "name", "replace", "definition", "shape", "mass", "density", "inertia", "position", "orientation",
     "velocity", "angular_velocity", "material", "color", "look", "point", "normal", "parent", "child",
@@ -180,9 +181,9 @@ another question: [validated](#validated) has the comparisons with measurements.
 
 A test makes many comparisons, and may have many cases: its row has the error that was nearest to what was
 asked. Errors are absolute, in SI units, or relative to the right value (*rel.*). An error of 0 where 0 was
-asked means equal numbers. Right values come from a *closed form*; an *own integration*, another computation in
-the test, such as SciPy's integrators or a quadrature; an *other program*; a *publication*; or an *invariant*:
-what a motion must keep, or two descriptions of one thing.
+asked means equal numbers. Right values come from a *closed form*; an *own integration*, a computation of ours
+that is no part of carom, such as SciPy's integrators or a quadrature; an *other program*; a *publication*; or
+an *invariant*: what a motion must keep, or two descriptions of one thing.
 """
 VALIDATED = """\
 ## Validated
@@ -214,6 +215,8 @@ def page() -> str:
         f"{len(verified)} features, {tests} tests, run on {latest} where a row has no other date. "
         f"Machine: {'. '.join(machines)}.\n",
     ]
+    untitled = {name for name, those in named.items() if those} - TITLES.keys()
+    assert not untitled, f"pages of the reference without a title: {untitled}"
     for name, title in TITLES.items():
         here = [row for feature in named.get(name, ()) for row in verified.get(feature, ())]
         if here:

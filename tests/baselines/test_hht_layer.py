@@ -54,7 +54,7 @@ def test_numerical_damping_only_jumps_over_the_layer(alpha):
 @verifies(
     "baselines.hht_alpha_layer",
     "errors of HHT-alpha in the layer",
-    "other program: the same scheme, written independently",
+    "own integration: the same scheme, written independently",
 )
 @pytest.mark.parametrize(
     ("steps", "error"), [(8, 2.63), (20, 0.158), (40, 3.6e-2), (80, 8.9e-3), (320, 5.5e-4)]

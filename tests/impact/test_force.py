@@ -7,6 +7,7 @@ from scipy.special import beta
 
 import carom
 from carom import Hertz, Stiffness
+from carom.results import waves
 from verified import agree, verifies
 
 FRICTION = np.array([[2.5, -1.5, 0], [-1.5, 2.5, 0], [0, 0, 1.0]]), (-1.0, 2.0, 0.0), 0.2
@@ -272,8 +273,11 @@ def test_two_ellipsoids_across_each_other():
 
 
 def test_a_run_says_where_waves_are_as_slow_as_the_impact():
-    """A ball of 2 cm strikes for .24 ms, a wave needs .1 ms; a rod of 40 cm of the same material some 2 ms."""
-    assert not struck(carom.Sphere(0.02)).warnings
+    """A ball of 2 cm strikes for .24 ms, a wave needs .054 ms; .15 ms in a rod of 40 cm of the same mass."""
+    ball = struck(carom.Sphere(0.02))
+    assert not ball.warnings
+    assert ball.impacts.duration[0] == pytest.approx(2.4e-4, rel=5e-3)
+    assert waves._wave(ball.scene["body"], 2e9) == pytest.approx(5.35e-5, rel=1e-3)
     rod = struck(
         carom.Capsule(0.02, 0.4),
         orientation=carom.euler("xyz", (0, 3, 0)),
@@ -284,6 +288,7 @@ def test_a_run_says_where_waves_are_as_slow_as_the_impact():
     assert "'body-floor'" in said
     assert "'body'" in said
     wave = 4 * 0.22 * np.sqrt(0.03 / carom.Capsule(0.02, 0.4).volume / 2e9)
+    assert wave == pytest.approx(1.47e-4, rel=2e-3)
     assert f"{wave:.2g} s to pass" in said
 
 

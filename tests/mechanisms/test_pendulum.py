@@ -57,7 +57,7 @@ def test_papers_method_has_order_two(kind):
 @verifies(
     'method="paper"',
     "errors of the three-field scheme for a pendulum",
-    "other program: the same scheme, written independently",
+    "own integration: the same scheme, written independently",
 )
 @pytest.mark.parametrize(("step", "error"), [(0.01, 2.1e-3), (0.005, 5.5e-4), (0.0025, 1.4e-4)])
 def test_papers_method_has_the_errors_of_its_scheme(step, error):

@@ -1,10 +1,14 @@
 """Chains of ten steel balls that touch: Hertz's law against its integration in time (RK4, energy to 5e-9)."""
 
+import runpy
+from pathlib import Path
+
 import numpy as np
 import pytest
 
 import carom
 
+ROOT = Path(__file__).parents[2]
 EQUAL = np.full(10, 0.01)
 TAPERED = 0.01 * 0.95 ** np.arange(1, 11)
 AFTER = {
@@ -47,6 +51,21 @@ def test_a_chain_ends_as_hertz_s_law_integrated_in_time(name):
     np.testing.assert_allclose(solution.velocity[-1, :, 0], after, rtol=0, atol=6e-7)
     np.testing.assert_allclose(solution.total_energy, solution.total_energy[0], rtol=1e-13)
     assert len(solution.impacts) == 9
+
+
+@pytest.mark.parametrize("name", ["EQUAL", "TAPERED"])
+def test_velocities_and_forces_are_within_what_the_page_says(name):
+    """1e-7 m/s, and 1e-5 of the greatest force."""
+    picture = runpy.run_path(str(ROOT / "docs" / "pictures" / "ball_chains.py"))
+    page = picture["page"]()
+    exact, k = picture["springs"](page[name])
+    solution = carom.simulate(page["chain"](page[name]), 0.02)
+    np.testing.assert_allclose(solution.velocity[-1, :, 0], exact.y[10:, -1], rtol=0, atol=1e-7)
+    force = solution.impact_forces(0)
+    t = np.linspace(0, force.duration, 1000)
+    x = exact.sol(t)[:10]
+    F = k * np.maximum(x[:9] - x[1:], 0.0).T ** 1.5
+    np.testing.assert_allclose(force.evaluate(t), F, rtol=0, atol=1e-5 * F.max())
 
 
 def test_one_after_another_the_speeds_are_products():

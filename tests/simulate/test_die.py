@@ -37,7 +37,7 @@ AFTER = {  # v+, w+ by Newton's law
 @verifies(
     "simulate",
     "first impact of the paper's die, in the plane and in space",
-    "other program: located impacts, Darboux and Keller's equation to 1e-10",
+    "own integration: located impacts, Darboux and Keller's equation to 1e-10",
 )
 @pytest.mark.few(6)
 @pytest.mark.parametrize(("spin", "mu"), AFTER)

@@ -53,7 +53,8 @@ class ImpactRecord(NamedTuple):
     located: (
         int  #: 1 if the time was located; 0 in a time-stepping (Moreau) step: its end is the time
     )
-    peak_force: float  #: greatest normal force [N]; NaN where no stiffness is stated
+    #: greatest normal force [N], of a stop of an angle the torque [N m]; NaN where none is stated
+    peak_force: float
     layer_duration: float  #: duration in the boundary layer [s], which its width decides
     name: str  #: name of the contact or stop; ``body-other`` for a default pair
     body: str  #: name of the body on which the impulse acts; for a stop the child of its joint

@@ -19,7 +19,7 @@ from carom.results.stiff_impacts import stiffness_of
 
 
 def impact_forces(solution, k: int, stiffness=None):
-    """Return the forces of impact k of a run, and of all that take place with it; see `Solution`."""
+    """Return the forces of impact k of a run, of all impacts at its time; see `Solution`."""
     from carom.impact.multiple.api import stated_laws
     from carom.impact.multiple.forces import made
     from carom.impact.multiple.layout import MultipleSettings

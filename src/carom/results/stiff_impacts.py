@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from carom.geometry import quaternion
 from carom.impact.api import with_path
 from carom.impact.force import duration, peak_force
 from carom.scene.stiffness import (
@@ -78,19 +79,11 @@ def _roots_of_radii(solution, pair, rows) -> np.ndarray:
         for part in pair:
             if not hasattr(part, "normal"):
                 own = turned[part.index] if part in solution.scene.bodies else part.orientation
-                total += curvatures_of(
-                    part.shape, _matrix(own).T @ across.T, _matrix(own).T @ normal
-                )
+                R = quaternion.matrix(own)
+                total += curvatures_of(part.shape, R.T @ across.T, R.T @ normal)
         low, high = np.linalg.eigvalsh(total)
         found.append(root_of_radius(float(high), float(low)))
     return np.array(found)
-
-
-def _matrix(q) -> np.ndarray:
-    """Return the rotation matrix of a unit quaternion."""
-    w, x, y, z = q
-    K = np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
-    return np.eye(3) + 2.0 * (w * K + K @ K)
 
 
 def _duration(stated: tuple, stiffness: tuple[float, float]) -> float:

@@ -14,11 +14,12 @@ from carom.results.names import contact_name
 from carom.scene.stiffness import Hertz, curvature_of
 from carom.status import Remark
 
-#: duration of an impact: of a wave through a body and back, from which on the body vibrates too
+#: greatest part of an impact that a wave may need, through a body and back: it has to pass at least twice, or
+#: the body cannot be taken as one at rest, and vibrates too
 WAVE_SHARE = 0.5
-CENTRAL = (
-    1.4716375530  # duration of compression by depth over speed, integral of (1 - x^(5/2))^(-1/2)
-)
+#: time of compression times the speed of approach over the greatest depth, the integral of (1 - x^(5/2))^(-1/2)
+#: from 0 to 1: 0.4 B(0.4, 0.5)
+COMPRESSION_TIME = 1.4716375530
 
 
 def remarks(rows, run) -> tuple[Remark, ...]:
@@ -57,7 +58,7 @@ def _shortest(rows, stiffness: Hertz, pair) -> float:
     u, m, took = u[struck], 1.0 / m[struck], -rows["compression_work"][struck]
     gave = rows["restitution_work"][struck]
     e = np.sqrt(np.divide(gave, took, out=np.zeros_like(gave), where=took > 0.0))
-    return float(np.min((1.0 + e) * CENTRAL * (1.25 * m * u**2 / k) ** 0.4 / u))
+    return float(np.min((1.0 + e) * COMPRESSION_TIME * (1.25 * m * u**2 / k) ** 0.4 / u))
 
 
 def _mean_curvature(part) -> float:

@@ -1,6 +1,7 @@
 """How stiff a contact is: what an impact lasts, and its greatest force.
 
-The motion does not depend on it, but the moduli of Hertz's laws divide an impact among several contacts.
+A single impact does not depend on it. Where several contacts strike together and all pairs of the scene have
+Hertz's law, the moduli decide how they share the impact.
 """
 
 from __future__ import annotations

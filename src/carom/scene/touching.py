@@ -72,8 +72,9 @@ class SceneContacts(MethodsOfScene):
         stiffness
             Stiffness of the boundary layer relative to those of simultaneous contacts, above 0. Default 1.
             Or the stiffness of the bodies, `carom.Stiffness` or `carom.Hertz`: then `Solution.impacts` has the
-            greatest force and the duration of each impact, which do not change the motion. If all pairs have
-            Hertz's law, its moduli divide impacts of several contacts.
+            greatest force and the duration of each impact. A single impact does not depend on it. Where several
+            contacts strike together and all pairs of the scene have Hertz's law, the moduli decide how they
+            share the impact.
         rolling_friction, pivoting_friction
             Greatest moment against rolling, and about the normal, in persistent contact, divided by the
             normal force [m]. Default 0. The moments act against relative rotation until it stops; each contact

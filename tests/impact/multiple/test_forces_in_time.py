@@ -44,7 +44,7 @@ def test_a_row_of_balls_is_that_of_springs_integrated_in_time(radii):
     )
     there = np.array([springs(x) for x in run.y.T])
     np.testing.assert_allclose(force.evaluate(t), there, rtol=0, atol=3e-5 * there.max())
-    assert force.peak_force == pytest.approx(force.normal_force.max(axis=0))
+    assert force.peak_force == pytest.approx(there.max(axis=0), rel=3e-4)  # of 400 times
     assert np.all(np.diff(force.contact_time[:, 0]) > 0.0)  # the wave
 
 
@@ -92,12 +92,6 @@ def test_corners_with_friction_keep_momentum_and_their_cones(law, exponent):
             force.impulse[-1, :, 0], impact.impulse[:, 0], rtol=0, atol=2e-5 * scale
         )
         np.testing.assert_allclose(force.velocity[-1], impact.velocity_after, rtol=0, atol=2e-5)
-        np.testing.assert_allclose(
-            force.velocity.reshape(-1, 12),
-            u.reshape(12) + force.impulse.reshape(-1, 12) @ W,
-            rtol=0,
-            atol=1e-12,
-        )
         times = np.linspace(0, force.duration, 20001)
         taken = np.trapezoid(force.evaluate(times), times, axis=0)
         np.testing.assert_allclose(taken, impact.impulse[:, 0], rtol=0, atol=2e-5 * scale)

@@ -138,9 +138,8 @@ def course(W, u, friction, restitution, stiffness, settings: MultipleSettings) -
             found = rows[:count] * np.array([time, *units * k])
             states = found[:, 1:].reshape(count, k, CONTACT_COLUMNS)  # a view
             P = states[..., 7:].reshape(count, -1)
-            states[..., 4:7] = u + (P @ W).reshape(
-                count, k, 3
-            )  # without friction, tangents were left out
+            # without friction, tangents were left out
+            states[..., 4:7] = u + (P @ W).reshape(count, k, 3)
             return found
         size *= 8
     return None

@@ -53,7 +53,7 @@ IMPACT = {
     "together": ((), "1", "points that were resolved together, each with a row of its own"),
     "wedged": ((), "1", "1 if friction wedges the pair, so that its law of restitution cannot hold"),
     "located": ((), "1", "1 if the time was located, 0 if it is the end of a time-stepping step"),
-    "peak_force": ((), "N", "greatest normal force, NaN where no stiffness is stated"),
+    "peak_force": ((), "N", "greatest normal force, of a stop of an angle the torque [N m]; NaN if not stated"),
     "layer_duration": ((), "s", "duration in the boundary layer"),
 }  # fmt: skip
 

@@ -27,7 +27,7 @@ def impact_force(
 
     The dotted line is the end of compression. What is left of the depth at the end is the dent of an impact
     that does not give all back. Of contacts that strike together all normal forces are drawn, with their
-    numbers.
+    numbers; of a run those of `Solution.impacts`.
 
     Parameters
     ----------
@@ -87,9 +87,12 @@ def _curves(force) -> list[tuple]:
     """Return force, depth (None where it is drawn already), colour and label of each curve."""
     hues = (looks.BLUE, looks.RED, looks.GREEN, looks.ORANGE, looks.SKY, looks.PURPLE, looks.BLACK)
     if isinstance(force, ImpactForces):
-        numbers = range(force.normal_force.shape[1])
-        parts = [(force.normal_force[:, i], force.depth[:, i]) for i in numbers]
-        return [(N, d, hues[i % len(hues)], f"$F_{{{i}}}$") for i, (N, d) in enumerate(parts)]
+        parts = list(zip(force.normal_force.T, force.depth.T))
+        numbers = force.impacts or range(len(parts))  # of a run those of its table
+        return [
+            (N, d, hues[i % len(hues)], f"$F_{{{number}}}$")
+            for i, (number, (N, d)) in enumerate(zip(numbers, parts))
+        ]
     parts = (force.normal_force, *force.friction_force.T)
     drawn = [(parts[0], force.depth, hues[0], "$F_{n}$")]
     for i, name in ((1, "t1"), (2, "t2")):
