@@ -99,6 +99,7 @@ def test_damaged_inputs_are_refused(tmp_path):
         carom.Ensemble.load(tmp_path / "e.zarr")
 
 
+@pytest.mark.bits  # the other process is not nudged
 def test_a_signal_at_any_time(tmp_path):
     """Killed by the clock, wherever it is; another process ends it."""
     code = "import sys; from ensembles.test_killed import throw; print(1, flush=True); throw(sys.argv[1])"
