@@ -69,15 +69,21 @@ class ImpactForce:
         from carom import checks
 
         times = checks.real_array("t", t, "(...,)")
-        p, F = self.impulse[:, 0], self.normal_force
-        i = np.clip(np.searchsorted(self.t, times, side="right") - 1, 0, len(self.t) - 2)
-        h = self.t[i + 1] - self.t[i]
-        z = (times - self.t[i]) / h
-        # the derivative of the cubic of p(t) between two times, with p and its slope F given at both
-        mean = (p[i + 1] - p[i]) / h
-        found = F[i] + z * (2.0 * (3.0 * mean - 2.0 * F[i] - F[i + 1]))
-        found = found + 3.0 * z * z * (F[i] + F[i + 1] - 2.0 * mean)
+        found = force_at(times, self.t, self.impulse[:, :1], self.normal_force[:, None])[..., 0]
         return np.where((times >= 0.0) & (times <= self.duration), found, 0.0)
+
+
+def force_at(times, t, P, F) -> np.ndarray:
+    """Return forces (..., k) at times (...): the derivative of the cubic of P(t) between two of the times t.
+
+    Impulses P (T, k) and their slopes F (T, k), the forces, are given at T times.
+    """
+    i = np.clip(np.searchsorted(t, times, side="right") - 1, 0, len(t) - 2)
+    h = (t[i + 1] - t[i])[..., None]
+    z = (times - t[i])[..., None] / h
+    mean = (P[i + 1] - P[i]) / h
+    found = F[i] + z * (2.0 * (3.0 * mean - 2.0 * F[i] - F[i + 1]))
+    return found + 3.0 * z * z * (F[i] + F[i + 1] - 2.0 * mean)
 
 
 def peak_force(work, k, n):

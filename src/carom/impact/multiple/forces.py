@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from carom import checks
+from carom.impact.force import force_at
 from carom.impact.thresholds import COURSE_ERROR, FIRST_FORCE
 from carom.scene.stiffness import ABSOLUTE, Stiffness
 
@@ -59,14 +60,7 @@ class ImpactForces:
             Times since the first touch [s].
         """
         times = checks.real_array("t", t, "(...,)")
-        P, F = self.impulse[..., 0], self.normal_force
-        i = np.clip(np.searchsorted(self.t, times, side="right") - 1, 0, len(self.t) - 2)
-        h = (self.t[i + 1] - self.t[i])[..., None]
-        z = (times - self.t[i])[..., None] / h
-        # the derivative of the cubic of P(t) between two times, with P and its slope F given at both
-        mean = (P[i + 1] - P[i]) / h
-        found = F[i] + z * (2.0 * (3.0 * mean - 2.0 * F[i] - F[i + 1]))
-        found = found + 3.0 * z * z * (F[i] + F[i + 1] - 2.0 * mean)
+        found = force_at(times, self.t, self.impulse[..., 0], self.normal_force)
         inside = (times >= 0.0) & (times <= self.duration)
         return np.where(inside[..., None], np.maximum(found, 0.0), 0.0)
 
