@@ -102,8 +102,8 @@ def moves_freely(k, group):
 def rows_of(k, i, group):
     """Return the number of given rows of a point.
 
-    A torque that keeps a body from turning is not needed where the other points alone do so: three that press
-    from rolling, two that stick from pivoting.
+    A torque that keeps a body from turning on another is not needed where points of these two alone do so:
+    three that press from rolling, two that stick from pivoting.
     """
     closed_point = group.closed[i]
     if closed_point.parent == CONSTANT:
@@ -114,11 +114,19 @@ def rows_of(k, i, group):
         return 0
     press, stick = 0, 0
     for j in range(k):
-        if group.closed[j].motion == MOTION_POINT and group.closed[j].presses == 1:
+        other = group.closed[j]
+        if other.motion == MOTION_POINT and other.presses == 1 and of_same_bodies(i, j, group):
             press, stick = press + 1, stick + (0 if group.problem.kind[j] == SLIDING else 1)
     if closed_point.motion == MOTION_ROLL:
         return 0 if press > 2 else 2
     return 0 if stick > 1 else 1
+
+
+@kernel
+def of_same_bodies(i, j, group):
+    """Return whether two entries are between the same two bodies."""
+    p, q = group.points[0][i], group.points[0][j]
+    return (p.a == q.a and p.b == q.b) or (p.a == q.b and p.b == q.a)
 
 
 @kernel
