@@ -20,11 +20,9 @@ from carom.friction import lu
 from carom.geometry.rotation import unit_vector
 from carom.model.workspace import MOTION_PIVOT, MOTION_POINT
 
-KNOWN, FACTORED_BY = (
-    0,
-    1,
-)  # places in `Equations.bodies`: bodies of the arms, and of the present factor
-LEAST_POINTS = 48  # least number of points of a group whose springs are solved by bodies
+# places in `Equations.bodies`: number of bodies of the arms, and of the present factor
+KNOWN, FACTORED_BY = 0, 1
+LEAST_POINTS = 24  # least number of points of a group whose springs are solved by bodies
 
 
 @kernel
