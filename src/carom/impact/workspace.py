@@ -54,6 +54,16 @@ CLOSED_POINT = [
 ]
 
 
+#: what a force along a row does to its two bodies (`carom.persistent.by_bodies`)
+ARM = [
+    ("body", "i8", 2),  # their places in the group, -1 for none
+    ("row", "f8", (2, 6)),
+    ("motion", "f8", (2, 6)),  # by a unit force
+    ("push", "f8", (2, 6)),  # of an unknown: by a unit force with its friction
+    ("stiffness", "f8"),  # of an unknown: 1/(eps S)
+]
+
+
 class Equations(NamedTuple):
     """A linear system A x = r for the forces or impulses in some rows of the points of a group."""
 
@@ -67,6 +77,11 @@ class Equations(NamedTuple):
     before: np.ndarray  # (3K,) the unknowns before an iteration of Newton's method
     directions: np.ndarray  # (3K, 3K) corrections z of x, each before A z (`persistent.settle`)
     part: np.ndarray  # (3K,) the part of the correction by r in each of them
+    arms: np.recarray  # (3K,) ARM
+    motion: np.ndarray  # (6N,) of the bodies
+    bodies: (
+        np.ndarray
+    )  # (2,) number of bodies with arms, 0 if W alone is known; the same of `factor`
     #: (2,) those of stages that fail in a closing step, and for impulses instead; work of factors (`springs`)
     iterations: np.ndarray
 
@@ -75,6 +90,7 @@ class Bodies(NamedTuple):
     """The bodies of a group."""
 
     member: np.ndarray  # (N,)
+    place: np.ndarray  # (N,) place of a member among them
     base: np.recarray  # (N,) STATE of an implicit stage, without its own term
     free: np.recarray  # (N,) STATE with velocities of a stage without forces of points
 
@@ -141,23 +157,27 @@ def new_group(system: System, more: bool = False) -> Group:
     )  # fmt: skip
     by_load = int((system.relations.frictions["load"] >= 0).sum())
     loads, secant = np.zeros((by_load, 1 + 3 * k, 9)), np.zeros((5 + by_load, by_load))
-    bodies = Bodies(member=np.zeros(n, dtype=np.int64), base=table(STATE, n), free=table(STATE, n))
+    bodies = Bodies(
+        member=np.zeros(n, dtype=np.int64), place=np.zeros(n, dtype=np.int64),
+        base=table(STATE, n), free=table(STATE, n),
+    )  # fmt: skip
     return Group(
         closed=table(CLOSED_POINT, k), count=np.zeros(1, dtype=np.int64), points=table(POINT, 2, k),
         u=u, p=p, a=a, back=back, idle=np.zeros((2, k, k)), loads=loads,
         vectors=np.zeros(9), secant=secant, bodies=bodies,
-        equations=new_equations(3 * k), problem=problem, cone=new_contact_work(k),
+        equations=new_equations(3 * k, n), problem=problem, cone=new_contact_work(k),
     )  # fmt: skip
 
 
-def new_equations(n: int) -> Equations:
-    """Return a system of up to n unknowns; its three matrices take .8 MB for 60 points."""
+def new_equations(n: int, bodies: int) -> Equations:
+    """Return a system of up to n unknowns of some bodies; its three matrices take .8 MB for 60 points."""
     rows, chosen, pivot = (np.zeros(n, dtype=np.int64) for _ in range(3))
     A, factor, directions = (np.zeros((n, n)) for _ in range(3))
     x, r, before, part = (np.zeros(n) for _ in range(4))
     return Equations(
         rows=rows, chosen=chosen, A=A, factor=factor, pivot=pivot, x=x, r=r, before=before,
-        directions=directions, part=part, iterations=np.zeros(2, dtype=np.int64),
+        directions=directions, part=part, arms=table(ARM, n), motion=np.zeros(6 * bodies),
+        bodies=np.zeros(2, dtype=np.int64), iterations=np.zeros(2, dtype=np.int64),
     )  # fmt: skip
 
 

@@ -35,6 +35,7 @@ from carom.persistent.bounces import (
     time_without_torque,
     velocity_after,
 )
+from carom.persistent.by_bodies import forget_arms
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.finish import add_forces_of_corners
 from carom.persistent.jam import jams_among, note_jam
@@ -82,6 +83,7 @@ def activate_group(model, data, k, label, horizon):
     work.moment[0].time = clock.now
     rows = add_frictions(system, label, state, k, group, work)
     inverse_masses(system, rows, group.points[0], state, work, group.problem.W)
+    forget_arms(group)
     if has_loads(group):
         note_responses(system, rows, state, work, group)
     weigh(system, rows, group)

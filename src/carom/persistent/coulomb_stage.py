@@ -258,6 +258,9 @@ def write_disc(k, n, i, width, hg, group):
     grows = group.problem.mu[unit] if normal >= 0 and p[normal] > 0.0 else 0.0
     for j in range(n):
         row = rows[j]
+        if W[a, row] == 0.0 and W[b, row] == 0.0 and row != normal:  # of bodies elsewhere
+            A[i, j] = A[i + width - 1, j] = 0.0
+            continue
         da, db = -W[a, row] / scale, -W[b, row] / scale if width == 2 else 0.0
         da, db = da + (1.0 if j == i else 0.0), db + (1.0 if width == 2 and j == i + 1 else 0.0)
         along = ea * da + eb * db

@@ -27,6 +27,7 @@ from carom.geometry.thresholds import REMAINDER, ROUND_OFF, SUM_ERROR
 from carom.kinematics.contact_point import in_axes, power_of_surface
 from carom.model.actions import MODE_STICK
 from carom.model.workspace import CONSTANT, MOTION_POINT
+from carom.persistent.by_bodies import FACTORED_BY
 from carom.persistent.joint_rows import is_driven
 from carom.persistent.settle import add_product, greatest, settle
 from carom.persistent.springs import last_torque, list_given, response
@@ -75,6 +76,7 @@ def factor_given(k, rubs, group):
             along = response(last, group, rows[i], rows[j]) if rubs else W[rows[i], rows[j]]
             A[i, j] = L[i, j] = along
         L[i, i] += PROXIMAL_SPRING * W[rows[i], rows[i]]
+    equations.bodies[FACTORED_BY] = 0
     lu.factor(L, n, equations.pivot, 0.0)
     return n
 

@@ -27,6 +27,7 @@ from carom.law.friction import bound_of_stick
 from carom.law.piecewise import any_depends_on_speed
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.adhesion import pull_rows, take_pulls, write_pulls
+from carom.persistent.by_bodies import note_arms
 from carom.persistent.joint_load import begin_loads, has_loads, note_reactions, note_responses
 from carom.persistent.joint_rows import (
     drift_of_coordinate,
@@ -82,6 +83,7 @@ def write_rows(model, data, label, s) -> int:
     set_surfaces(system, work.moment[0].time)
     k = find_points(system, data, label)
     inverse_masses(system, k, points, state, work, group.problem.W)
+    note_arms(system, data, members(work, label, group.bodies.member), k)
     if has_loads(group):
         note_responses(system, k, state, work, group)
     write_pulls(system, data.active, k, state, group)

@@ -16,6 +16,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction import lu
+from carom.persistent.by_bodies import is_factored_by_bodies, multiply_by_bodies, solve_by_bodies
 from carom.persistent.thresholds import MULTIPLE, REMOVED
 
 CORRECTIONS = 30
@@ -28,7 +29,7 @@ def settle(n, held, enough, small, force, equations):
     `held` corrections of the first r are in the solution already. An error below `small` asks for no entry of x
     above `force`: the rows have it.
     """
-    A, x, r, Z, part = equations.A, equations.x, equations.r, equations.directions, equations.part
+    x, r, Z, part = equations.x, equations.r, equations.directions, equations.part
     size, first, room = greatest(n, r), 0, Z.shape[0] // 2
     for i in range(n):
         x[i] = 0.0
@@ -39,7 +40,7 @@ def settle(n, held, enough, small, force, equations):
         z, q = Z[2 * (turn - first)], Z[2 * (turn - first) + 1]
         correct(n, equations, z)
         part[turn - first] = 1.0
-        multiply(n, A, z, q)
+        multiply(n, equations, z, q)
         for j in range(turn - first):
             c = dot(n, Z[2 * j + 1], q)
             part[turn - first] -= c * part[j]
@@ -73,12 +74,25 @@ def correct(n, equations, z):
     """Write z = (A + eps S)^-1 r."""
     for i in range(n):
         z[i] = equations.r[i]
-    lu.substitute(equations.factor, n, equations.pivot, z)
+    solve_regular(n, equations, z)
 
 
 @kernel
-def multiply(n, A, z, q):
+def solve_regular(n, equations, x):
+    """Replace x by the solution of (A + eps S) x = x, with the present factor."""
+    if is_factored_by_bodies(equations):
+        solve_by_bodies(n, equations, x)
+    else:
+        lu.substitute(equations.factor, n, equations.pivot, x)
+
+
+@kernel
+def multiply(n, equations, z, q):
     """Write q = A z, four rows at a time: a sum waits for its last term, four do not wait for each other."""
+    if is_factored_by_bodies(equations):
+        multiply_by_bodies(n, equations, z, q)
+        return
+    A = equations.A
     whole = n - n % 4
     for i in range(0, whole, 4):
         a0, a1, a2, a3 = A[i], A[i + 1], A[i + 2], A[i + 3]

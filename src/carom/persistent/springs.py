@@ -32,9 +32,18 @@ from carom.law.turning import arm_of_torque
 from carom.model.allowance import COUNT_FACTORS
 from carom.model.workspace import CONSTANT, MOTION_POINT, MOTION_ROLL
 from carom.persistent import thresholds as limits
+from carom.persistent.by_bodies import (
+    FACTORED_BY,
+    factor_by_bodies,
+    goes_by_bodies,
+    is_factored_by_bodies,
+    push_by_forces,
+    push_by_unknowns,
+    rate_of_row,
+)
 from carom.persistent.joint_load import LOAD_ROUNDS, renew_loads
 from carom.persistent.joint_rows import greatest_load, is_driven
-from carom.persistent.settle import add_product, greatest, settle
+from carom.persistent.settle import add_product, greatest, settle, solve_regular
 
 SHARES = 6  # rounds until the compliances of stick are found
 FACTORED = 1  # place of the work of factors in `Equations.iterations`: a point has three rows
@@ -134,6 +143,11 @@ def factor_rows(k, group):
     """List the given rows, write R P F^T and the factor of R P F^T + eps S; return their number."""
     equations, n, last = group.equations, list_given(k, group), last_torque(k, group)
     rows, A = equations.rows, equations.A
+    if goes_by_bodies(n, equations):
+        for i in range(n):
+            write_push(last, rows[i], group)
+        equations.iterations[FACTORED] += factor_by_bodies(n, equations) // PASS
+        return n
     for i in range(n):
         for j in range(n):
             A[i, j] = response(last, group, rows[i], rows[j])
@@ -145,6 +159,7 @@ def factor_rows(k, group):
 def factor(n, rows, group):
     """Write the factor of A + eps S, with the compliances S of the given rows."""
     A, L = group.equations.A, group.equations.factor
+    group.equations.bodies[FACTORED_BY] = 0
     for i in range(n):
         for j in range(n):
             L[i, j] = A[i, j]
@@ -252,6 +267,31 @@ def response(last, group, a, row):
 
 
 @kernel
+def write_push(last, row, group):
+    """Write the motion by a unit force along a given row, with its friction, and the stiffness of the row."""
+    arm, i = group.equations.arms[row], row // 3
+    arm.stiffness = 1.0 / (limits.PROXIMAL_SPRING * compliance_of(group, row))
+    for side in range(2):
+        for j in range(6):
+            arm.push[side, j] = arm.motion[side, j]
+    if row % 3 == 0 and group.problem.kind[i] == SLIDING:
+        add_friction(arm, i, group)
+    for j in range(i + 1, last if row % 3 == 0 else i):
+        if turns_with(group, j, i):
+            add_friction(arm, j, group)
+
+
+@kernel
+def add_friction(arm, i, group):
+    """Add the motion by the friction of entry i to the push of a unit normal force."""
+    d, mu, arms = group.problem.heading[i], group.problem.mu[i], group.equations.arms
+    for side in range(2):
+        first, second = arms[3 * i + 1].motion[side], arms[3 * i + 2].motion[side]
+        for j in range(6 if arm.body[side] >= 0 else 0):
+            arm.push[side, j] -= mu * (d[0] * first[j] + d[1] * second[j])
+
+
+@kernel
 def turns_with(group, j, i):
     """Return whether entry j is a torque of rotation that the normal force of point i bounds."""
     closed_point = group.closed[j]
@@ -269,13 +309,11 @@ def first_forces(k, n, turn, push, group):
     for i in range(k):
         if closed[i].parent == CONSTANT and group.problem.kind[i] == SLIDING:
             p[3 * i + 1] = -group.problem.mu[i] * group.problem.heading[i, 0]
-    for i in range(n):
-        x[i] = -acceleration_of(k, rows[i], group)
-    lu.substitute(equations.factor, n, equations.pivot, x)
+    write_wanted(k, n, group, x)
+    solve_regular(n, equations, x)
     for i in range(n):
         add_force(k, group, rows[i], x[i])
-    for i in range(n):
-        r[i] = -acceleration_of(k, rows[i], group)
+    write_wanted(k, n, group, r)
     enough, small = limits.EQUATION_ERROR * push, limits.FORCE_ERROR * push
     left = settle(n, 1.0, enough, small, greatest(3 * k, p), equations)
     if not left <= limits.DEPENDENT_ERROR * push:
@@ -291,6 +329,25 @@ def first_forces(k, n, turn, push, group):
         if turn >= 2 * k and sinks(k, push, group):
             return -1
     return changed
+
+
+@kernel
+def write_wanted(k, n, group, out):
+    """Write the accelerations that the given rows lack under the forces in `p`."""
+    rows, by_bodies = group.equations.rows, is_factored_by_bodies(group.equations)
+    if by_bodies:
+        push_by_forces(k, group.equations, group.p)
+    for i in range(n):
+        out[i] = -acceleration_in(k, rows[i], by_bodies, group)
+
+
+@kernel
+def acceleration_in(k, row, by_bodies, group):
+    """Return the acceleration in a row under the forces in `p`, or `by_bodies` in the motion of these."""
+    if by_bodies:
+        rate = rate_of_row(group.equations.arms[row], group.equations.motion)
+        return group.problem.c[row] + rate
+    return acceleration_of(k, row, group)
 
 
 @kernel
@@ -324,11 +381,15 @@ def load(k, n, push, group):
         if rows[i] % 3 == 0:  # stick is far softer
             most, force = max(most, abs(r[i])), max(force, abs(p[rows[i]]))
     settle(n, 0.0, limits.SPRING_ERROR * most, 0.0, 0.0, equations)
+    by_bodies = is_factored_by_bodies(equations)
+    if by_bodies:
+        push_by_forces(k, equations, p)
+        push_by_unknowns(n, equations, -limits.PROXIMAL_SPRING, equations.x)
     for i in range(k):
         row = 3 * i
         if closed[i].motion == MOTION_POINT and closed[i].presses == 0 and closed[i].weight > 0.0:
-            a = acceleration_of(k, row, group)
-            for j in range(n):
+            a = acceleration_in(k, row, by_bodies, group)
+            for j in range(0 if by_bodies else n):
                 soft = limits.PROXIMAL_SPRING * response(last, group, row, rows[j])
                 a -= soft * equations.x[j]
             if a < -max(ROUND_OFF * push, LAST_DIGIT * force * group.problem.W[row, row]):
@@ -365,8 +426,11 @@ def acceleration_of(k, row, group):
 @kernel
 def note_accelerations(k, group):
     """Write the accelerations of all points under the forces in `p`."""
+    by_bodies = is_factored_by_bodies(group.equations)
+    if by_bodies:
+        push_by_forces(k, group.equations, group.p)
     for row in range(3 * k):
-        group.a[row] = acceleration_of(k, row, group)
+        group.a[row] = acceleration_in(k, row, by_bodies, group)
 
 
 @kernel
