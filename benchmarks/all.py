@@ -27,7 +27,7 @@ SCRIPTS = (
     "free_step", "impact", "corner", "coulomb", "location", "convergence", "accuracy", "work_precision",
     "chain", "loops", "methods", "heaps", "many", "many_bodies", "pairs", "ensembles", "scaling", "allocation",
     "startup", "short_calls", "user_functions", "cube_tosses", "real_impacts", "simbenchmark", "cenic",
-    "installed",
+    "comparison", "installed",
 )  # fmt: skip
 PICTURES = (
     "work_precision",
@@ -37,6 +37,8 @@ PICTURES = (
     "location",
     "simbenchmark",
     "cenic",
+    "peers_asked",
+    "peers_time",
 )
 
 

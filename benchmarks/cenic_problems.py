@@ -183,6 +183,14 @@ def drake_problems() -> dict[str, Callable]:
 
     ground, tiny = 1e5, 1e-6  # stiffness [N/m]; mass that carries the block along x [kg]
 
+    def material(static, kinetic, properties):
+        AddContactMaterial(
+            dissipation=50.0,
+            point_stiffness=2 * ground,
+            friction=CoulombFriction(static, kinetic),
+            properties=properties,
+        )
+
     class Push(LeafSystem):
         def __init__(self):
             super().__init__()
@@ -226,7 +234,7 @@ def drake_problems() -> dict[str, Callable]:
         carrier = plant.GetBodyByName("carrier")
         slide(plant, "block", 1.0 - tiny, carrier, [0, 0, 1])
         rough = ProximityProperties()
-        AddContactMaterial(2 * ground, 50.0, CoulombFriction(STATIC, KINETIC), rough)
+        material(STATIC, KINETIC, rough)
         for body, shape in (
             (plant.GetBodyByName("block"), Sphere(RADIUS)),
             (plant.world_body(), HalfSpace()),
@@ -271,7 +279,7 @@ def drake_problems() -> dict[str, Callable]:
         builder = DiagramBuilder()
         plant, _ = AddMultibodyPlantSceneGraph(builder, 0.0)
         rough = ProximityProperties()
-        AddContactMaterial(2 * ground, 50.0, CoulombFriction(STATIC, STATIC), rough)
+        material(STATIC, STATIC, rough)
         plant.RegisterCollisionGeometry(
             plant.world_body(), RigidTransform(), HalfSpace(), "floor", rough
         )

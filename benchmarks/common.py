@@ -54,12 +54,14 @@ def report(
     rows: list[list[str]],
     notes: str = "",
     timing: str = TIMING,
+    machine: str = "",
 ) -> None:
     """Print a Markdown table and write it to ``out/benchmarks/<name>.md``.
 
-    `timing` says how times were taken; where it is empty, the notes say it.
+    `timing` says how times were taken; where it is empty, the notes say it. `machine` is that of the numbers,
+    where they were kept; otherwise it is this one.
     """
-    lines = [f"## {title}", "", f"{machine_line()}{timing and '; '}{timing}.", ""]
+    lines = [f"## {title}", "", f"{machine or machine_line()}{timing and '; '}{timing}.", ""]
     lines += ["| " + " | ".join(head) + " |", "| " + " | ".join("---" for _ in head) + " |"]
     lines += ["| " + " | ".join(str(cell) for cell in row) + " |" for row in rows]
     lines += ["", notes.strip(), ""] if notes else [""]

@@ -178,3 +178,33 @@ def test_an_ensemble_says_what_it_has(run):
         with pytest.raises(AttributeError, match=words):
             getattr(made, name)
     assert not hasattr(made, "_private")
+
+
+@pytest.mark.parametrize(
+    ("argument", "value", "call"),
+    [
+        ("impact_law", "moreau", lambda value: carom.Options(multiple=value)),
+        ("impact_law", "Poisson", lambda value: carom.Options(multiple=value)),
+        ("impact_law", "moreu", lambda value: carom.Options(multiple=value)),
+        (
+            "multiple",
+            "sequential",
+            lambda value: carom.Scene().set_contact_default(impact_law=value),
+        ),
+    ],
+)
+def test_a_value_of_another_argument_is_said_to_be_that(argument, value, call):
+    with pytest.raises(ValueError, match=rf"{argument}='\w{{6,}}'\)$"):
+        call(value)
+
+
+def test_words_of_other_arguments_are_their_values():
+    for argument, table in hints.WORDS.items():
+        for said, words in table.items():
+            (other,) = re.findall(r"(\w+)=\{", said)
+            assert other in {"multiple", "impact_law"} - {argument}
+            for word in words.split():
+                if other == "multiple":
+                    carom.Options(multiple=word)
+                else:
+                    carom.Scene().set_contact_default(impact_law=word)

@@ -17,6 +17,8 @@ from typing import Any
 
 import numpy as np
 
+from carom import hints
+
 #: [m] least and greatest length whose powers up to the fifth (inertia of a solid) are finite and not 0
 LENGTHS = (1e-60, 1e60)
 #: [kg] least and greatest mass that has, with such lengths, a finite inertia
@@ -196,8 +198,14 @@ def choice(name: str, value, allowed: Iterable[str]) -> str:
         return value
     raise ValueError(
         f"{name} must be one of {', '.join(map(repr, options))}, got {shown(value)}"
-        f"{nearest(value, options)}"
+        f"{elsewhere(name, value) or nearest(value, options)}"
     )
+
+
+def elsewhere(name: str, value: str) -> str:
+    """Return the end of a message about a value that is one of another argument, or nothing."""
+    said = hints.of_word(name, value)
+    return f"; {said}" if said else ""
 
 
 def nearest(value: str, options: Iterable[str]) -> str:

@@ -338,6 +338,17 @@ MEMBERS = {
 }  # fmt: skip
 
 
+#: values of an argument that are those of another one, with a sentence
+WORDS = {
+    "multiple": {
+        "that is an impact law of contacts: scene.add_contact(..., impact_law={!r})": "moreau poisson stronge",
+    },
+    "impact_law": {
+        "that is a law of multiple impact: carom.Options(multiple={!r})": "simultaneous sequential",
+    },
+}
+
+
 def _plain(name: str) -> str:
     return name.lower().replace("_", "")
 
@@ -367,6 +378,15 @@ def of_member(owner: str, name: str) -> str:
 def of_argument(function: str, name: str) -> str:
     """Return the sentence about an argument that a function or a class does not have, "" for none."""
     return _ARGUMENT.get(function, {}).get(name, "")
+
+
+def of_word(argument: str, value: str) -> str:
+    """Return the sentence about a value that belongs to another argument, "" for none."""
+    for said, words in WORDS.get(argument, {}).items():
+        near = get_close_matches(value.lower(), words.split(), n=1, cutoff=0.8)
+        if near:
+            return said.format(near[0])
+    return ""
 
 
 def ending(owner: str, name: str, members, near: str = "") -> str:

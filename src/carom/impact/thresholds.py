@@ -70,5 +70,5 @@ LEAST_TURN = 1e-6  #: greatest term of the turn: least slope by which Newton's m
 SAME_SLIP = 1e-7  #: rad: directions of slip that differ by less are one
 NO_ENERGY = 1e-14  #: work of compression: less that restitution gives back counts as none
 COURSE_ERROR = 1e-5  #: greatest impulse: by which an impact that is followed once more may differ
-COURSE_SHARE = 1e-2  #: tolerance: of an impact that is followed in time, so that its forces are as accurate
+COURSE_SHARE = 1e-3  #: tolerance: of an impact that is followed in time, whose contacts may close many times
 FIRST_FORCE = 1e-3  #: greatest force of a contact: at which its time begins and ends
