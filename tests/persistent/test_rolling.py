@@ -178,3 +178,25 @@ def test_a_coin_lies_down_flat():
     assert s.position[-1, 0, 2] == pytest.approx(0.001, abs=1e-6)
     assert np.all(s.velocity[-1] == 0.0)
     assert np.max(np.abs(s.ledger.residual)) < 1e-5 * s.total_energy[0]
+
+
+def test_pivoting_friction_holds_beside_others_that_stick():
+    """A box slips over a plate that sticks to its floor; a torque below that of pivoting friction turns nothing.
+
+    Two points of two bodies that stick keep these from turning on each other, but not others of their group.
+    The point where the box presses is ahead, in line with the force, so that slip has no moment about the
+    vertical through its centre: v = v0 - mu g t, w_z = 0.
+    """
+    scene = carom.Scene(gravity=(0, 0, -G))
+    scene.add_half_space((0, 0, 0), (0, 0, 1))
+    scene.add_body(carom.Box(1, 1, 0.1), mass=10.0, position=(0, 0, 0.05), name="plate")
+    box = scene.add_body(
+        carom.Box(0.1, 0.1, 0.04), mass=0.5, position=(-0.2, 0, 0.12), velocity=(1, 0, 0), name="box"
+    )
+    scene.add_force(carom.forces.Torque((0, 0, 0.6 * 2e-3 * 0.5 * G)), box)
+    scene.set_contact_default(friction=0.3, restitution=0.0, pivoting_friction=2e-3)
+    s = carom.simulate(scene, 0.2)
+    assert np.max(np.abs(s["box"].angular_velocity)) < 1e-11
+    agree(s["box"].velocity[:, 0], 1.0 - 0.3 * G * s.t, atol=1e-12)
+    assert s.stats["trial_steps"] < 400
+    assert s.stats["whole_steps"] == 0
