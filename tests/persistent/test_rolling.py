@@ -181,7 +181,7 @@ def test_a_coin_lies_down_flat():
 
 
 def test_pivoting_friction_holds_beside_others_that_stick():
-    """A box slips over a plate that sticks to its floor; a torque below that of pivoting friction turns nothing.
+    """A box slips over a plate that sticks to its floor; a torque below pivoting friction turns nothing.
 
     Two points of two bodies that stick keep these from turning on each other, but not others of their group.
     The point where the box presses is ahead, in line with the force, so that slip has no moment about the
@@ -191,8 +191,9 @@ def test_pivoting_friction_holds_beside_others_that_stick():
     scene.add_half_space((0, 0, 0), (0, 0, 1))
     scene.add_body(carom.Box(1, 1, 0.1), mass=10.0, position=(0, 0, 0.05), name="plate")
     box = scene.add_body(
-        carom.Box(0.1, 0.1, 0.04), mass=0.5, position=(-0.2, 0, 0.12), velocity=(1, 0, 0), name="box"
-    )
+        carom.Box(0.1, 0.1, 0.04), mass=0.5, position=(-0.2, 0, 0.12), velocity=(1, 0, 0),
+        name="box",
+    )  # fmt: skip
     scene.add_force(carom.forces.Torque((0, 0, 0.6 * 2e-3 * 0.5 * G)), box)
     scene.set_contact_default(friction=0.3, restitution=0.0, pivoting_friction=2e-3)
     s = carom.simulate(scene, 0.2)
