@@ -120,10 +120,7 @@ def pleiades(dt):
     return np.array([at(body)[:2] for body in stars]), took
 
 
-SOLVE = {
-    "rolling": rolling, "free fall": fall, "stops": stops, "stick-slip": stick_slip,
-    "bounce e=0.5": lambda dt: bounce(dt, 0.5), "bounce e=1": lambda dt: bounce(dt, 1.0), "Pleiades": pleiades,
-}  # fmt: skip
+SOLVE = p.table(rolling, fall, stops, stick_slip, bounce, pleiades)
 
 if __name__ == "__main__":
     b.connect(b.DIRECT)

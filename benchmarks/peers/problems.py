@@ -33,17 +33,15 @@ BOUNCES = {0.5: 0.65, 1.0: 3.0}
 #: seven stars in a plane (the Pleiades of the IVP test set); star i has mass i
 STARS = np.array([[3.0, 3], [3, -3], [-1, 2], [-3, 0], [2, 0], [-2, -4], [2, 4]])
 FLY = np.array([[0.0, 0], [0, 0], [0, 0], [0, -1.25], [0, 1], [1.75, 0], [-1.5, 0]])
-STARS_END, YEARS = (
-    np.array(
-        [
-            [0.3706139143970502, -3.943437585517392], [3.237284092057233, -3.271380973972550],
-            [-3.222559032418324, 5.225081843456543], [0.6597091455775310, -2.590612434977470],
-            [0.3425581707156584, 1.198213693392275], [1.562172101400631, -0.2429682344935824],
-            [-0.7003092922212495, 1.091449240428980],
-        ]
-    ),
-    3.0,
+STARS_END = np.array(
+    [
+        [0.3706139143970502, -3.943437585517392], [3.237284092057233, -3.271380973972550],
+        [-3.222559032418324, 5.225081843456543], [0.6597091455775310, -2.590612434977470],
+        [0.3425581707156584, 1.198213693392275], [1.562172101400631, -0.2429682344935824],
+        [-0.7003092922212495, 1.091449240428980],
+    ]
 )  # fmt: skip
+YEARS = 3.0
 NAMES = ("rolling", "free fall", "stops", "stick-slip", "bounce e=0.5", "bounce e=1", "Pleiades")
 LONG = 8.0  # seconds after which no finer setting is tried
 
@@ -187,7 +185,21 @@ def stepped(step: Callable[[], object], dt: float, duration: float) -> float:
     return time.process_time() - begin
 
 
-def main(version: str, variants: list[Variant], rounds: int = 1) -> None:
+def table(rolling, fall, stops, stick_slip, bounce, pleiades) -> dict:
+    """Return the functions of a setting by the names of the problems; that of a bounce takes e too."""
+    solve = (
+        rolling,
+        fall,
+        stops,
+        stick_slip,
+        lambda h: bounce(h, 0.5),
+        lambda h: bounce(h, 1.0),
+        pleiades,
+    )
+    return dict(zip(NAMES, solve, strict=True))
+
+
+def main(version: str, variants: list[Variant]) -> None:
     """Solve each problem at each setting, and print one line of JSON for each."""
     parser = argparse.ArgumentParser()
     parser.add_argument("--only", default="")

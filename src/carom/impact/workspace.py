@@ -79,9 +79,8 @@ class Equations(NamedTuple):
     part: np.ndarray  # (3K,) the part of the correction by r in each of them
     arms: np.recarray  # (3K,) ARM
     motion: np.ndarray  # (6N,) of the bodies
-    bodies: (
-        np.ndarray
-    )  # (2,) number of bodies with arms, 0 if W alone is known; the same of `factor`
+    #: (2,) number of bodies with arms, 0 if W alone is known; the same of `factor`
+    bodies: np.ndarray
     #: (2,) those of stages that fail in a closing step, and for impulses instead; work of factors (`springs`)
     iterations: np.ndarray
 
