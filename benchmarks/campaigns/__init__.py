@@ -26,6 +26,7 @@ from campaigns import (
     mechanisms,
     piles,
     plays,
+    presses,
     rails,
     rests,
     robots,
@@ -54,4 +55,5 @@ FAMILIES = {
     "capstans": capstans.case, "coordinates": coordinates.case, "drives": drives.case,
     "clearances": clearances.case, "loads": loads.case, "magnets": magnets.case,
     "belt drives": belt_drives.case, "gears": gears.case, "switches": switches.case,
+    "presses": presses.case,
 }  # fmt: skip

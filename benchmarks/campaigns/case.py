@@ -61,7 +61,8 @@ class Outcome:
 
 def wrong(row: dict) -> list[str]:
     """Return what is wrong with an outcome, in words."""
-    found = [] if row["status"] == "SUCCESS" else [row["status"]]
+    ends = ("SUCCESS", "BLOCKED") if row.get("blocks") else ("SUCCESS",)
+    found = [] if row["status"] in ends else [row["status"]]
     found += [] if row["depth"] <= DEPTH else ["penetrates"]
     found += [] if row["off"] <= 1.0 else ["passes through"]
     if not row["gained"] <= GAIN:

@@ -117,9 +117,10 @@ _MESSAGES: dict[Status, tuple[str, str]] = {
         '{finer}, or use method="implicit" with a step.',
     ),
     Status.BLOCKED: (
-        "A driver presses a body against another one or a half-space, and the body cannot move away: no motion "
-        "satisfies both the driver and the contact.",
-        "Change the prescribed motion, or attach the body by a spring, or by a joint that lets it move away.",
+        "A driver presses a body against another one, a half-space or a stop, and what lies between cannot "
+        "move away: no motion satisfies both the driver and the contacts.",
+        "Change the prescribed motion, give the driver a limit (Driver(..., limit=)), or attach the body by a "
+        "spring, or by a joint that lets it move away.",
     ),
     Status.STOPPED: ("An event ended the run, as requested.", ""),
     Status.LEFT_CURVE: (

@@ -55,6 +55,68 @@ def test_a_driver_that_moves_a_body_into_the_floor(shape):
     assert np.max(np.abs(a.ledger.residual)) < 1e-12
 
 
+def press(shape, count, e, mu, **limits):
+    """A stack on the floor and a plate .04 m above it, which a motor moves down at .2 m/s."""
+    scene, height = carom.Scene(), 0.0
+    below = scene.add_half_space((0, 0, 0), (0, 0, 1))
+    for _ in range(count):
+        body = scene.add_body(shape, mass=1.0, position=(0, 0, height + 0.05))
+        scene.add_contact(body, below, restitution=e, friction=mu)
+        below, height = body, height + 0.1
+    place = (0, 0, height + 0.05)
+    plate = scene.add_body(
+        carom.Box(0.3, 0.3, 0.02), mass=5.0, position=place, velocity=(0, 0, -0.2)
+    )
+    scene.add_contact(plate, below, restitution=e, friction=mu)
+    way = scene.add_joint(joints.Prismatic((0, 0, 1), place), carom.GROUND, plate)
+    scene.add_constraint(carom.constraints.Driver(way, rate=-0.2, **limits))
+    return scene
+
+
+@pytest.mark.parametrize(("e", "mu"), [(0.0, 0.3), (0.5, 0.0), (1.0, 0.3)])
+@pytest.mark.parametrize(
+    ("shape", "count"), [(carom.Box(0.1, 0.1, 0.1), 3), (carom.Sphere(0.05), 1)]
+)
+def test_a_motor_that_presses_a_stack_together(shape, count, e, mu):
+    # The plate is on the stack at .2 s, and none of the bodies can yield.
+    run = carom.simulate(press(shape, count, e, mu), 1.0, throw=False)
+    assert run.status is Status.BLOCKED
+    assert "limit=" in run.message
+    assert 0.2 - 1.0 / 200 <= run.t[-1] <= 0.2 + 1e-12  # the last end of a step before
+    assert len(run.warnings) == 0
+    assert len(run.impacts) == 0
+    assert np.max(np.abs(run.ledger.residual)) < 1e-12
+
+
+def test_a_motor_with_a_limit_presses_a_stack():
+    # The motor yields at 100 N, and the plate comes to rest on the stack, at its height.
+    scene = press(carom.Box(0.1, 0.1, 0.1), 3, 0.0, 0.3, limit=100.0)
+    s = carom.simulate(scene, 0.5)
+    assert s.position[-1, -1, 2] == pytest.approx(0.31, abs=1e-9)
+    np.testing.assert_allclose(s.velocity[-1], 0.0, atol=1e-9)
+
+
+def test_a_motor_that_closes_the_room_between_two_plays():
+    # theta_2 >= theta_1 - p and theta_2 <= q - theta_1 leave no room from theta_1 = (p + q)/2 on.
+    scene, p, q, rate = carom.Scene(gravity=(0, 0, 0)), 0.1, 0.3, 2.0
+    turns = []
+    for k in range(2):
+        wheel = scene.add_body(
+            carom.Cylinder(0.1, 0.05), mass=1.0, position=(0.5 * k, 0, 0),
+            angular_velocity=(0, 0, rate * (k == 0)),
+        )  # fmt: skip
+        turns.append(
+            scene.add_joint(joints.Revolute((0.5 * k, 0, 0), (0, 0, 1)), carom.GROUND, wheel)
+        )
+    first, second = turns
+    scene.add_constraint(carom.constraints.Driver(first, rate=rate))
+    scene.add_play({second: 1.0, first: -1.0}, -p, 1.0, restitution=1.0)
+    scene.add_play({second: 1.0, first: 1.0}, -1.0, q, restitution=0.0)
+    a = check_failure(Status.BLOCKED, scene, 1.0)
+    closed = 0.5 * (p + q) / rate
+    assert closed - 1.0 / 200 <= a.t[-1] <= closed
+
+
 def test_no_convergence():
     scene = carom.Scene()
     scene.add_body(mass=1, inertia=(1, 2, 3), angular_velocity=(1, 2, 3))

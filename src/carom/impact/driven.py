@@ -42,7 +42,13 @@ def blocked(system, point, inverse_mass):
     """Return whether prescribed motions block a point along its normal: W_nn is round-off of 1/m."""
     if not (system.relations.there == 1 and system.solver.kind == LOOPS):
         return False
+    return inverse_mass <= IMPACT_ERROR * free_inverse_mass(system, point)
+
+
+@kernel
+def free_inverse_mass(system, point):
+    """Return 1/m of the two bodies of a point, as if neither had joints."""
     free = 1.0 / system.bodies[point.a].mass
     if point.b >= 0:
         free += 1.0 / system.bodies[point.b].mass
-    return inverse_mass <= IMPACT_ERROR * free
+    return free

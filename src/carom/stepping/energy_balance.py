@@ -110,6 +110,13 @@ def note_whole(system, controls, step, code, bodies, watch):
 
 
 @kernel
+def forget_whole(step, watch):
+    """Forget the first time-stepping step, which is not taken: prescribed motions block the bodies in it."""
+    if watch.whole == 1 and watch.whole_at == step.begin:
+        watch.whole = 0
+
+
+@kernel
 def note_energies(system, now, clock):
     """Store the present energies; return the size of their terms."""
     clock.kinetic, clock.potential, size = energies(system, now, clock.now)

@@ -26,6 +26,8 @@ MISSED_DEPTH = 1e-5  #: size of the smaller body: depth of a missed feature, fro
 MISSED_PIECE = 1.0 / 16.0  #: step: down to which it is cut
 RESIDUAL_LIMIT = 1e-3  #: greatest speed: a piece whose contacts have a greater residual is cut
 SLOW_RESIDUAL = 1e-8  #: greatest velocity: residual that is enough if convergence is slow
+POSSIBLE = 1e-9  #: greatest lack of opening: a motion that lacks less keeps the points apart
+MOVES_NOTHING = 1e-11  #: of impulses on free bodies: the work of impulses that move nothing, by round-off
 WRONG_RESIDUAL = 1e-2  #: greatest velocity: more is no result, whatever the cost
 #: diagonal of W: weights of the proximal term in turn: impulses are often not unique (four corners of a
 #: box), and with 1e-8 a step changes the undetermined part arbitrarily

@@ -19,7 +19,7 @@ from carom.status import BLOCKED, FUNCTION_FAILED, LEFT_CURVE, OUT_OF_PLANE, STE
 from carom.stepping.crowd.error import watch_error
 from carom.stepping.crowd.layout import SPOTS
 from carom.stepping.crowd.step import step_crowd
-from carom.stepping.energy_balance import note_whole, watch_step
+from carom.stepping.energy_balance import forget_whole, note_whole, watch_step
 from carom.stepping.event_step import NOT_FINITE, advance, left_ball
 from carom.stepping.grid import end_of, is_saved
 from carom.stepping.islands import one_island, parts
@@ -196,6 +196,8 @@ def move_island(model, data, method):
     if work.step[0].crowd == 0:
         return advance(model, data, method)
     code = step_crowd(model, data, method)
+    if code == BLOCKED:
+        forget_whole(work.step[0], data.watch[0])
     if code == 0 and left_ball(model.system, data.state, work.step[0].length, work):
         return r.LEFT_BALL
     if code == 0 and model.controls.order > 0:

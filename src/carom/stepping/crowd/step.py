@@ -31,7 +31,7 @@ from carom.model.allowance import COUNT_BLOCKS, left
 from carom.model.laws import STRIKES
 from carom.model.workspace import MOTION_POINT
 from carom.persistent.thresholds import SHORTEST_CUT
-from carom.status import LEFT_CURVE, NOT_FINITE
+from carom.status import BLOCKED, LEFT_CURVE, NOT_FINITE
 from carom.stepping import thresholds as limits
 from carom.stepping.crowd.balance import (
     assign_energy,
@@ -40,6 +40,7 @@ from carom.stepping.crowd.balance import (
     remove_energy,
     scale_velocity,
 )  # fmt: skip
+from carom.stepping.crowd.blocked import blocked
 from carom.stepping.crowd.error import note_error
 from carom.stepping.crowd.finish import finish
 from carom.stepping.crowd.free_motion import (
@@ -222,6 +223,8 @@ def collide(model, data, h, fall, patient, careful):
         most = limits.RESIDUAL_LIMIT * greatest_speed(crowd, k) + limits.RESIDUAL_LIMIT * fall * h
         if careful and residual > most:
             return TOO_LONG, k, residual, 0.0  # a shorter piece is a different problem
+        if residual > most and blocked(system, k, h, crowd):
+            return BLOCKED, k, residual, 0.0
         if careful and misses_bounce(system, k, h, fall, crowd):
             return TOO_LONG, k, residual, 0.0
         driven, holds = impose(model, data, k, h)
