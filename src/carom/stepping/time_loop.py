@@ -206,22 +206,24 @@ def move_island(model, data, method):
 
 
 @inlined
-def may_be_whole(code, active):
+def may_be_whole(code, data):
     """Return whether a step that ended with this code may succeed as a time-stepping step of a crowd.
 
     Forces that grow without bound, mechanisms that lock, ends of curves, bodies that tip beside a profile and
-    gaps without a value are not mended by it.
+    gaps without a value are not mended by it. Steps that are too small are those of contacts if there is one,
+    or was one in this step (a disc that rattles down to its face).
     """
     if code in (BLOCKED, LEFT_CURVE, OUT_OF_PLANE, FUNCTION_FAILED):
         return False
-    return code != STEP_TOO_SMALL or active.count[0] > 0
+    touched = data.active.count[0] > 0 or data.clocks[0].event > data.work.step[0].first_event
+    return code != STEP_TOO_SMALL or touched
 
 
 @inlined
 def retry_single(model, data, start, code):
     """Return to the start of a step that failed event by event; return whether this is done."""
     step = data.work.step[0]
-    if code >= r.GROW or model.controls.retry == 0 or not may_be_whole(code, data.active):
+    if code >= r.GROW or model.controls.retry == 0 or not may_be_whole(code, data):
         return False
     if not one_island.give_up_single(model.controls, data.clocks[0].step, data.work):
         return False
@@ -242,7 +244,7 @@ def retry_apart(model, data, islands, code):
     step, again = data.work.step[0], code == r.LEFT_BALL
     if again:
         islands.plan[0].widen *= 2.0
-    elif model.controls.hold == 1 and may_be_whole(code, data.active):
+    elif model.controls.hold == 1 and may_be_whole(code, data):
         again = parts.give_up(model.controls, islands, islands.plan[0].pieces, data.work)
         if again:
             bodies = parts.bodies_of_present(islands)
