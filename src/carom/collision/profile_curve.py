@@ -14,6 +14,7 @@ from carom.geometry.thresholds import ROUND_OFF
 
 PEAK_STEPS = 60
 ROWS_TOGETHER = 16  # in a block
+ROWS_OF_BLOCKS = 128  # in a row of blocks, which may be passed over together
 FINENESS = 1 << 30  # of a place on the curve, as a part
 
 
@@ -32,7 +33,12 @@ def curve_at(row, t):
 @inlined
 def block_at(rows, first, last):
     """Return the end of a block of rows, its middle, and how far the block is from the start of that row."""
-    end = min(first + ROWS_TOGETHER, last)
+    return rows_at(rows, first, min(first + ROWS_TOGETHER, last))
+
+
+@inlined
+def rows_at(rows, first, end):
+    """Return the end of these rows, their middle, and how far they are from the start of that row."""
     middle = (first + end) >> 1
     arc = max(rows[middle].start - rows[first].start, rows[end].start - rows[middle].start)
     return end, middle, limits.CHORD * arc

@@ -24,6 +24,7 @@ from carom.collision.features import NOBODY, OF_B, OF_SUPPORT, face_part
 from carom.collision.found import put, put_parts, swap
 from carom.collision.layout import MOST_POINTS
 from carom.collision.profile_curve import (
+    ROWS_OF_BLOCKS,
     ROWS_TOGETHER,
     block_at,
     curve_at,
@@ -31,6 +32,7 @@ from carom.collision.profile_curve import (
     is_straight,
     part_of_place,
     peak_in_row,
+    rows_at,
     stretch,
 )
 from carom.geometry.thresholds import ROUND_OFF
@@ -109,16 +111,23 @@ def each_block(pair, turn, most, search):
         x, y = place_of_a(turn, rows[at].c[0, 0], rows[at].c[0, 1])
         if x * x + y * y > (b.extent + least + arc) ** 2:
             continue
-        for j in range(b.first, b.last, ROWS_TOGETHER):
+        j = b.first
+        while j < b.last:
+            if (j - b.first) % ROWS_OF_BLOCKS == 0:
+                end_b, at, way = rows_at(rows, j, min(j + ROWS_OF_BLOCKS, b.last))
+                dx, dy = rows[at].c[0, 0] - x, rows[at].c[0, 1] - y
+                if dx * dx + dy * dy > (least + arc + way) ** 2:
+                    j = end_b
+                    continue
             end_b, at, way = block_at(rows, j, b.last)
             dx, dy = rows[at].c[0, 0] - x, rows[at].c[0, 1] - y
-            if dx * dx + dy * dy > (least + arc + way) ** 2:
-                continue
-            blocks = (i, end_a, j, end_b)
-            if search:
-                count = search_blocks(pair, turn, blocks, most, count)
-            else:
-                least = min(least, closest_starts(rows, turn, blocks, least))
+            if dx * dx + dy * dy <= (least + arc + way) ** 2:
+                blocks = (i, end_a, j, end_b)
+                if search:
+                    count = search_blocks(pair, turn, blocks, most, count)
+                else:
+                    least = min(least, closest_starts(rows, turn, blocks, least))
+            j = end_b
     return least, count
 
 
@@ -152,10 +161,11 @@ def search_blocks(pair, turn, blocks, most, count):
             continue
         for l in range(j, end_b):
             dx, dy = rows[l].c[0, 0] - x, rows[l].c[0, 1] - y
-            reach = most + limits.CHORD * (h + rows[l + 1].start - rows[l].start)
-            if dx * dx + dy * dy <= reach * reach:
+            both = limits.CHORD * (h + rows[l + 1].start - rows[l].start)
+            square = dx * dx + dy * dy
+            if square <= (most + both) ** 2:
                 count = search_rows(pair, turn, k, l, count)
-                if chords_cross(rows, turn, k, l):
+                if square <= both * both and chords_cross(rows, turn, k, l):
                     pair.state.count[0], pair.state.count[1] = k, l
     return count
 
