@@ -96,6 +96,40 @@ def test_a_jerk(e, large):
     np.testing.assert_allclose(after.sum(), -e * 2 * v, atol=1e-9)
 
 
+def jerk(rng, **rope):
+    """Simulate a rope with slack over a post or a wheel, with e = 1 and drawn masses, speeds and friction."""
+    on = GROUND if rng.random() < 0.5 else "wheel"
+    slack = rng.uniform(0.0, 0.1)
+    scene = post(
+        10.0 ** rng.uniform(-0.5, 0.5, 2), rng.uniform(0.05, 0.6), rng.normal(), on, int(rng.integers(2)),
+        rng.uniform(-1.6, -1.0, 2), restitution=1.0, **rope,
+    )  # fmt: skip
+    scene.replace("rope", upper=scene["rope"].upper + slack)
+    for name in "ab":
+        scene.replace(name, velocity=scene[name].velocity + (0.3 * rng.normal(), 0, rng.normal()))
+    return carom.simulate(scene, 0.25, step=5e-3)
+
+
+def test_jerks_gain_nothing_and_what_newtons_law_gains_is_said():
+    """By default a rope that rubs returns at most what it took; a law that adds energy says so."""
+    gains = []
+    for seed in range(40):
+        ours, newton = (
+            jerk(np.random.default_rng([72, seed]), **rope)
+            for rope in ({}, {"impact_law": "newton"})
+        )
+        exchanged = np.max(ours.kinetic_energy)
+        assert np.diff(ours.ledger.impacts).max() < 1e-13 * exchanged, seed
+        assert ours.warnings == (), seed
+        assert abs(ours.ledger.residual).max() < 1e-9 * exchanged, seed
+        gain = newton.impacts.energy_change[newton.impacts.energy_change > 0.0].sum()
+        gains.append(gain / np.max(newton.kinetic_energy))
+        if gains[-1] > 1e-6:
+            assert newton.warnings[0].startswith("Newton's law with friction added energy"), seed
+    assert np.count_nonzero(np.array(gains) > 1e-6) > 5
+    assert np.any((np.array(gains) > 1e-6) & (np.array(gains) < 1e-4))
+
+
 @pytest.mark.parametrize(("how", "error"), HOW)
 @pytest.mark.parametrize("way", [1, -1])
 def test_band_brake(how, error, way):

@@ -101,7 +101,7 @@ class SceneRope(SceneStops):
         stiffness: float | None = None,
         damping: float = 0.0,
         restitution: float | Restitution = 0.0,
-        impact_law: str = "newton",
+        impact_law: str | None = None,
         name: str | None = None,
     ) -> Rope:
         """Add a rope without mass over points and pulleys: it pulls, and does not push.
@@ -128,8 +128,9 @@ class SceneRope(SceneStops):
             Of a rope that stretches, likewise [N s/m]. Default 0.
         restitution : float or Restitution
             Of the jerk by which a rope of fixed length gets taut, from 0 (default) to 1, or its law.
-        impact_law : str
-            As for `add_stop`.
+        impact_law : str, optional
+            As for `add_stop`. Default: ``"stronge"`` where it rubs, since Newton's law with friction may add
+            energy, else ``"newton"``; without friction all laws agree.
         name : str, optional
             Default ``"rope1"``, ``"rope2"``, ... With wheels without slip its parts have the names
             ``"<name>.1"``, ``"<name>.2"``, ..., from the first end on.
@@ -201,7 +202,8 @@ class SceneRope(SceneStops):
             stops.append(
                 self._parts.make(
                     Stop, "rope", own, False, joint=of, coordinate=0, upper=part.start + max(0.0, slack),
-                    restitution=restitution, impact_law=impact_law,
+                    restitution=restitution,
+                    impact_law=("stronge" if part.wrap else "newton") if impact_law is None else impact_law,
                 )
             )  # fmt: skip
             slack = 0.0
