@@ -102,8 +102,12 @@ class Coordinates:
                 self._sum(tuple(zip(own, row)))
             made = table(arrays.WRAP, 1)
             made.strand[0] = [own[t] if t >= 0 else -1 for t in wrap.strands]
-            made.angle[0], made.way, made.arc = wrap.angles, wrap.way, wrap.arc
-            made.friction = wrap.friction
+            made.angle[0], made.friction = wrap.angles, wrap.friction
+            first, *between, last = (*wrap.guides, (wrap.way, 0.0, 0.0))[: max(2, len(wrap.guides))]
+            made.way[0], made.guide[0, 1] = (-first[0], last[0]), int(bool(wrap.others))
+            made.arc[0] = first[1], last[1]
+            made.share[0] = 1.0, last[2] / wrap.friction
+            made.between = sum(arc * mu for _, arc, mu in between) / wrap.friction
             self.wraps[self.sums[key]] = made
         return self.sums[key]
 

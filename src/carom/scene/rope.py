@@ -53,7 +53,8 @@ class Pulley:
     friction : float, optional
         None (default): the rope does not slip, and turns the wheel (on one of the ground it slips freely). 0:
         it slips freely. Above 0: it slips where the tension at one side is exp(friction angle) times that at
-        the other one, with the angle that it lies round the guide; one guide of each part of a rope may rub.
+        the other one, with the angle that it lies round the guide. One guide of each part of a rope may rub, or
+        several of the ground with nothing that moves between them.
     center : (3,), optional
         Centre, in the world at the start [m]. Default: the mass centre of the wheel; of the ground it must be
         given.
@@ -330,36 +331,45 @@ def _part_of(ends: list[_End], strands: list[_Strand], wheel_terms) -> _Part:
     start = sum(strand.of.start for strand in strands if strand.of is not None)
     rubs = [k for k, end in enumerate(ends) if end.friction > 0.0]
     if len(rubs) > 1:
-        raise ValueError(
-            "friction must be above 0 for one pulley of each part of a rope between wheels without slip, got "
-            f"{len(rubs)}"
-        )
-    wrap = _wrap(ends, strands, terms, rubs[0], wheel_terms) if rubs else None
+        moves = [one.of for one in strands[rubs[0] : rubs[-1]] if one.of is not None]
+        if moves or not all(isinstance(ends[k].part, Ground) for k in rubs):
+            raise ValueError(
+                "friction must be above 0 for one pulley of each part of a rope between wheels without slip, "
+                f"or for several of the ground with nothing that moves between them, got {len(rubs)}"
+            )
+    wrap = _wrap(ends, strands, terms, rubs, wheel_terms) if rubs else None
     return _Part(terms, start, length, wrap)
 
 
-def _wrap(ends, strands: list[_Strand], terms: list, k: int, wheel_terms) -> Wrap:
-    """Return the length of a part that rubs on its end k, with the slip there."""
-    before = {id(strand.of) for strand in strands[:k]}
-    behind = {id(strand.of) for strand in strands[k:]}
+def _wrap(ends, strands: list[_Strand], terms: list, rubs: list[int], wheel_terms) -> Wrap:
+    """Return the length of a part that rubs on some of its ends, with the one slip there."""
+    first, last = rubs[0], rubs[-1]
+    before = {id(strand.of) for strand in strands[:first]}
+    behind = {id(strand.of) for strand in strands[last:]}
     slip = [0.5 * ((id(one) in behind) - (id(one) in before)) for one, _, _ in terms]
     if not ends[0].slips:
         slip[0] = -0.5 * terms[0][2]
     if not ends[-1].slips:
         slip[-1] = 0.5 * terms[-1][2]
-    turned = wheel_terms(ends[k], -1.0)
+    turned = wheel_terms(ends[first], -1.0)
     places = {id(one): n for n, (one, _, _) in enumerate(terms)}
-    around, axis = (strands[k - 1], strands[k]), strands[k].axis
-    assert axis is not None
-    way = 1 if float(ends[k].axis @ axis) > 0.0 else -1
+    around = strands[first - 1], strands[last]
+    guide, *others = (_guide(ends[k], strands[k - 1], strands[k]) for k in rubs)
     made: Any = Wrap._of([*terms, *((joint, at, 0.0) for joint, at, _ in turned)])
     keep(
-        made, slip=(*slip, *(factor for *_, factor in turned)), way=way, friction=ends[k].friction,
+        made, slip=(*slip, *(factor for *_, factor in turned)), way=guide[0], arc=guide[1],
+        friction=guide[2], others=tuple(others),
         strands=tuple(places[id(one.of)] if one.of is not None else -1 for one in around),
         angles=tuple(one.seen for one in around),
-        arc=way * ((around[1].angle or 0.0) - (around[0].angle or 0.0)),
     )  # fmt: skip
     return made
+
+
+def _guide(end: _End, before: _Strand, behind: _Strand) -> tuple[int, float, float]:
+    """Return way, arc and friction of a guide between two strands."""
+    assert behind.axis is not None
+    way = 1 if float(end.axis @ behind.axis) > 0.0 else -1
+    return way, way * ((behind.angle or 0.0) - (before.angle or 0.0)), end.friction
 
 
 def _strand(a: _End, b: _End, last: _Strand) -> _Strand:

@@ -94,6 +94,7 @@ LATER_OF: dict[str, dict[str, Any]] = {
     "JointFriction": {"mu": None, "radius": None, "length": None},
     "Material": {"young": None, "poisson": 0.3},
     "Stop": {"stiffness": None},
+    "Wrap": {"others": {"tuple": []}},
 }
 ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 
