@@ -347,7 +347,7 @@ def test_files_and_changes(tmp_path):
         ({"stiffness": 10.0}, "stiffness must be left out of a rope with friction"),
         ({"over": 2}, "friction must be above 0 for one pulley"),
         ({"over": 2, "wheel": "free"}, "friction must be above 0 for one pulley"),
-        ({"wheel": "free"}, r"must have a Revolute joint about its axis on carom\.GROUND"),
+        ({"wheel": "free"}, r"must have a Revolute joint about its axis, on carom\.GROUND"),
         ({"friction": -0.1}, "friction must be"),
         ({"turns": 0.5}, "turns must be"),
     ],

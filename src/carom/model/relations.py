@@ -20,6 +20,7 @@ from carom.scene.actuators import Controlled
 from carom.scene.constraints import Coupling, Rows
 from carom.scene.coordinates import (
     Axial,
+    BodyTurn,
     Bush,
     Combination,
     Gap,
@@ -150,10 +151,11 @@ class Coordinates:
             made.kind, made.length = arrays.OF_LIMIT["strand"], length.radii[0] - length.radii[1]
             made.parent_frame[0] = triad(length.axis)
             made.begin = length.start
-        if isinstance(length, (Bush, Axial)):
+        if isinstance(length, (Bush, Axial, BodyTurn)):
             frame = triad(length.axis)
-            made.kind = arrays.PRISMATIC if isinstance(length, Axial) else arrays.OF_LIMIT["bush"]
-            made.length = 0.0 if isinstance(length, Axial) else length.radius
+            kinds = {Bush: arrays.OF_LIMIT["bush"], Axial: arrays.PRISMATIC}
+            made.kind = kinds.get(type(length), arrays.REVOLUTE)
+            made.length = length.radius if isinstance(length, Bush) else 0.0
             made.parent_frame[0] = self.placement.axes(length.parent, frame)
             made.child_frame[0] = self.placement.axes(length.child, frame)
         made.parent, made.child = length.parent.index, length.child.index

@@ -41,7 +41,7 @@ def kind_of(joint: Joint | Combination | Length, coordinate: int | str) -> str:
     A combination in which anything slides is a displacement; "" stands for joints that are only named.
     """
     if isinstance(joint, Length):
-        return "slide"
+        return "turn" if isinstance(joint, BodyTurn) else "slide"
     if isinstance(joint, Combination):
         kinds = {kind_of(one, k) for one, k, _ in joint.terms}
         return "slide" if "slide" in kinds else min(kinds)
@@ -255,6 +255,31 @@ class Strand(Length):
     def index(self) -> tuple:
         """What tells it from other coordinates."""
         return (*super().index, *self.axis.tolist(), *self.radii.tolist(), self.start)
+
+
+@dataclass(frozen=True, eq=False)
+class BodyTurn(Length):
+    """The angle by which a body has turned about an axis that is fixed in the world: no joint measures it.
+
+    Along it a torque acts on the body alone. The parent is the ground.
+
+    Attributes
+    ----------
+    axis : (3,)
+        The axis, in the world; it keeps its direction in the body, too.
+    """
+
+    axis: np.ndarray
+
+    @property
+    def name(self) -> str:
+        """How it is called in messages."""
+        return f"turn of {self.child.name}"
+
+    @property
+    def index(self) -> tuple:
+        """What tells it from other coordinates."""
+        return "turn", self.child.index, *self.axis.tolist()
 
 
 @dataclass(frozen=True, init=False, eq=False)

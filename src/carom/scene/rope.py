@@ -17,8 +17,8 @@ import numpy as np
 from carom import arguments, checks, fields
 from carom.fields import Integer, Number, NumberOrNone, Value, Vector, VectorOrNone, keep
 from carom.geometry.frames import triad
-from carom.scene.bodies import Body, Ground
-from carom.scene.coordinates import Combination, Strand, Wrap
+from carom.scene.bodies import GROUND, Body, Ground
+from carom.scene.coordinates import BodyTurn, Combination, Strand, Wrap
 from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
 from carom.scene.restitution import Restitution
@@ -42,9 +42,9 @@ class Pulley:
     Parameters
     ----------
     wheel : Body, str or carom.GROUND
-        The wheel, or the ground for one that does not turn. If the rope does not slip, or rubs on it, it is the
-        child of a `Revolute` joint about this axis on the ground; a wheel that moves is one that it slips over
-        freely. It may also rub on a part that a joint on the ground keeps from turning.
+        The wheel, or the ground for one that does not turn. If the rope does not slip, or rubs on it, it is on
+        a `Revolute` joint about this axis, on the ground or on a body that carries it (the block of a tackle,
+        the arm of a tensioner). It may also rub on a part that a joint on the ground keeps from turning.
     radius : float
         Radius of the rope's centre line [m], above 0.
     axis : (3,)
@@ -145,8 +145,7 @@ class SceneRope(SceneStops):
         ------
         ValueError
             If the rope has fewer than two ends, axes of neighbours are not parallel, a circle is inside another
-            one, a wheel without slip has no `Revolute` joint about its axis on the ground, or `length` is too
-            short.
+            one, a wheel without slip has no `Revolute` joint about its axis, or `length` is too short.
 
         Examples
         --------
@@ -262,13 +261,19 @@ class SceneRope(SceneStops):
             return []
         if isinstance(end.part, Ground):
             return []
+        carried = False
         for joint in self._parts.parts(Joint):
-            if joint.kind != "Revolute" or joint.child is not end.part:
+            if joint.kind != "Revolute" or end.part not in (joint.child, joint.parent):
                 continue
             cosine = float(joint.definition.axis @ end.axis)  # pyright: ignore
-            # the torque of a joint acts on both its sides, that of a rope on the wheel alone
             if abs(cosine) > 1.0 - PARALLEL and isinstance(joint.parent, Ground):
                 return [(joint, 0, math.copysign(factor * end.radius, factor * cosine))]
+            carried = carried or abs(cosine) > 1.0 - PARALLEL
+        if carried:
+            # the torque of its joint would act on the carrier, too, that of a rope on the wheel alone
+            assert end.axis is not None
+            turn = BodyTurn(GROUND, end.part, end.part.position, None, end.axis)
+            return [(turn, 0, factor * end.radius)]
         if end.friction > 0.0 and any(
             joint.definition.turn == "rigid" and isinstance(joint.parent, Ground)
             for joint in self._parts.parts(Joint)
@@ -276,8 +281,8 @@ class SceneRope(SceneStops):
         ):
             return []
         raise ValueError(
-            f"wheel {end.part.name!r} must have a Revolute joint about its axis on carom.GROUND, by which the "
-            "rope turns it; over a wheel that moves let it slip: carom.Pulley(..., friction=0)"
+            f"wheel {end.part.name!r} must have a Revolute joint about its axis, on carom.GROUND or on what "
+            "carries it, about which the rope turns it; else let it slip: carom.Pulley(..., friction=0)"
         )
 
 

@@ -16,7 +16,7 @@ from carom.geometry import quaternion
 from carom.model.switched import NOTHING_SWITCHED, stands_of
 from carom.scene.belts import BeltRelation, BeltStretch
 from carom.scene.bodies import Body
-from carom.scene.coordinates import Axial, Bush, Length, Strand, terms_of
+from carom.scene.coordinates import Axial, BodyTurn, Bush, Length, Strand, terms_of
 from carom.scene.curves import Curve
 from carom.scene.forces import Spring
 from carom.scene.joints import CurveOnPoint, Distance, Joint, RollingDisc, RollingSphere
@@ -357,7 +357,7 @@ def links_in(solution) -> list[Link]:
 
 def _cord(of: Any, kind: str, length: float) -> list[Link]:
     """Return a strand of a rope, or a massless rod or cord; none of any other coordinate."""
-    if not isinstance(of, Length) or isinstance(of, (Bush, Axial)):
+    if not isinstance(of, Length) or isinstance(of, (Bush, Axial, BodyTurn)):
         return []
     ends = _in_body(of.parent, of.ends[0]), _in_body(of.child, of.ends[1])
     pair = of.parent.index, of.child.index
