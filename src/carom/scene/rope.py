@@ -90,6 +90,15 @@ class _End(NamedTuple):
     turns: int = 0
 
 
+class _Made(NamedTuple):
+    """How a rope is made: with a stiffness, or a law of the jerk by which it gets taut."""
+
+    stiffness: float | None
+    damping: float
+    restitution: float | Restitution
+    law: str | None
+
+
 class SceneRope(SceneStops):
     """The method of `Scene` for ropes."""
 
@@ -164,10 +173,7 @@ class SceneRope(SceneStops):
             raise ValueError(
                 "over must begin and end with a body or a point, and have two of them at least"
             )
-        if name is None:
-            every = (*self.stops, *self._parts.parts(AppliedForce))
-            own = {part.name.partition(".")[0] for part in every}
-            name = next(f"rope{k}" for k in count(1) if f"rope{k}" not in own)
+        name = self._free_name("rope") if name is None else name
         parts, least = _parts(ends, self._wheel_terms), sum(s.length for s in _strands(ends))
         if not all(part.terms for part in parts):
             raise ValueError(
@@ -175,14 +181,20 @@ class SceneRope(SceneStops):
             )
         if length is not None:
             length = checks.number("length", length, above=0.0, unit="m")
+        made = _Made(stiffness, damping, restitution, impact_law)
+        return self._laid(name, parts, (least, length), made)
+
+    def _laid(self, name: str, parts: list[_Part], lengths, made: _Made) -> Rope:
+        """Add the parts of a rope: (way at the start, length or None)."""
+        least, length = lengths
         names = [name] if len(parts) == 1 else [f"{name}.{k + 1}" for k in range(len(parts))]
-        c = checks.number("damping", damping, least=0.0, unit="N s/m")
-        if stiffness is not None:
-            k = checks.number("stiffness", stiffness, above=0.0, unit="N/m")
-            if not (isinstance(restitution, (int, float)) and restitution == 0.0):
+        c = checks.number("damping", made.damping, least=0.0, unit="N s/m")
+        if made.stiffness is not None:
+            k = checks.number("stiffness", made.stiffness, above=0.0, unit="N/m")
+            if not (isinstance(made.restitution, (int, float)) and made.restitution == 0.0):
                 raise ValueError(
                     "restitution must be left out of a rope with a stiffness, which gets taut without an "
-                    f"impact, got {checks.shown(restitution)}"
+                    f"impact, got {checks.shown(made.restitution)}"
                 )
             if any(part.wrap for part in parts):
                 raise ValueError("stiffness must be left out of a rope with friction on a pulley")
@@ -199,15 +211,21 @@ class SceneRope(SceneStops):
             of = part.wrap or (
                 part.terms[0][0] if len(part.terms) == 1 else Combination._of(part.terms)
             )
+            law = ("stronge" if part.wrap else "newton") if made.law is None else made.law
             stops.append(
                 self._parts.make(
                     Stop, "rope", own, False, joint=of, coordinate=0, upper=part.start + max(0.0, slack),
-                    restitution=restitution,
-                    impact_law=("stronge" if part.wrap else "newton") if impact_law is None else impact_law,
+                    restitution=made.restitution, impact_law=law,
                 )
             )  # fmt: skip
             slack = 0.0
         return Rope(tuple(stops))
+
+    def _free_name(self, word: str) -> str:
+        """Return the first of the names word1, word2, ... that no rope has."""
+        every = (*self.stops, *self._parts.parts(AppliedForce))
+        own = {part.name.partition(".")[0] for part in every}
+        return next(f"{word}{k}" for k in count(1) if f"{word}{k}" not in own)
 
     def _springs(self, names, parts, lengths, constants) -> tuple[AppliedForce, ...]:
         """Add the parts of a rope that stretches: (way at the start, length), (stiffness, damping)."""
