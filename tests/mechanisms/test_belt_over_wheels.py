@@ -66,6 +66,7 @@ def test_a_serpentine_belt_of_fixed_length(torque, how):
 
 
 @verifies("add_belt(stiffness=)", r"$\sum_k T_k l_k = T_0\sum_k l_k$", "closed form")
+@verifies("add_belt(tension=)", "at the start in all parts", "closed form")
 @pytest.mark.parametrize("first", [0, 1, 2])
 def test_a_serpentine_belt_that_stretches(first):
     """Damped, it moves as one of fixed length; what one part gets longer the others get shorter."""
@@ -167,6 +168,9 @@ def test_a_tensioner_moves_and_the_belt_keeps_its_length(how):
     assert abs(s.ledger.residual).max() < 1e-6
 
 
+@verifies(
+    "add_belt(slack=)", r"plastic jerks: $v\sum_k I_k/R_k^2 = I_0\omega_0/R_0$", "closed form"
+)
 def test_a_slack_chain_gets_taut_by_jerks():
     """All energy is kept with e = 1; with e = 0 the wheels end at one speed."""
     for e in (0.0, 1.0):
@@ -176,13 +180,14 @@ def test_a_slack_chain_gets_taut_by_jerks():
         assert len(s.impacts) > 2
         assert abs(s.ledger.residual).max() < 1e-9
         if e == 1.0:
-            np.testing.assert_allclose(s.kinetic_energy, s.kinetic_energy[0], rtol=1e-10)
+            agree(s.kinetic_energy, s.kinetic_energy[0], rtol=1e-10)
         else:
             v = INERTIA[0] * 3.0 / RADII[0] / np.sum(INERTIA / RADII**2)
             speeds = [SIDES[k] * s[f"hinge{k}"].rate[-1] * RADII[k] for k in range(4)]
-            np.testing.assert_allclose(speeds, v, rtol=1e-9)
+            agree(speeds, v, rtol=1e-9)
 
 
+@verifies("add_belt(damping=)", "two wheels: the motion with `joints.Belt(damping=)`", "invariant")
 def test_two_wheels_are_those_of_a_belt():
     def drive(new):
         scene = carom.Scene(gravity=(0, 0, 0))
@@ -212,7 +217,7 @@ def test_two_wheels_are_those_of_a_belt():
 
     new, old = drive(True), drive(False)
     at = np.linspace(0, 1, 21)
-    np.testing.assert_allclose(new.evaluate(at)[3], old.evaluate(at)[3], rtol=1e-8, atol=1e-8)
+    agree(new.evaluate(at)[3], old.evaluate(at)[3], atol=1e-8)
     for one in (new, old):
         assert one["belt.1"].tension[0] == pytest.approx(40.0, abs=1e-9)
 
