@@ -48,7 +48,7 @@ from carom.contact.kinds.parting import (
 from carom.contact.kinds.partner import centre_of_other, smaller
 from carom.contact.kinds.profile_drift import drift_of_profile, drift_of_two_profiles
 from carom.contact.kinds.rim import same_point
-from carom.contact.thresholds import ACTIVE_REACH, REACH
+from carom.contact.thresholds import ACTIVE_REACH, TOOTH_REACH
 from carom.geometry.thresholds import RESOLUTION
 from carom.geometry.vectors import cross, dot, minus, plus
 from carom.status import OUT_OF_PLANE
@@ -73,13 +73,25 @@ def time_apart(system, contact, state, bounds, h, work) -> tuple[float, float]:
 
 
 @kernel
+def active_reach(system, contact):
+    """Return how far above the least gap active points are sought, in the iterations of a step.
+
+    The time of a search goes with the square of its reach (`carom.collision.two_profiles.places_of`).
+    """
+    part = TOOTH_REACH if are_two(system, contact) else ACTIVE_REACH
+    return part * smaller(contact)
+
+
+@kernel
 def touch_of_active(system, contact, feature, p, state, work):
     """Write the points of a contact; return the one that has a feature, or that replaces it.
 
     An active point is among the nearest; only where it is not, all within a greater reach are sought.
     """
     if are_two(system, contact):
-        list_on_solid(system, contact, contact.other_solid, state, REACH * smaller(contact), work)
+        list_on_solid(
+            system, contact, contact.other_solid, state, active_reach(system, contact), work
+        )
         for i in range(work.pair.state[0].total):
             if same_point(system, contact, work.touches[i], feature, p, state):
                 return i
