@@ -37,8 +37,8 @@ TOPICS = {
             "contact_default", "pairs_by_default",
         ),
         "Joints and constraints": (
-            "add_joint", "add_stop", "add_play", "add_rope", "add_constraint", "switch", "joints", "stops",
-            "constraints", "switches",
+            "add_joint", "add_stop", "add_play", "add_rope", "add_belt", "add_constraint", "switch", "joints",
+            "stops", "constraints", "switches",
         ),
         "Forces": ("add_force", "forces"),
         "Changes": ("replace", "remove", "copy"),

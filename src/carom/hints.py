@@ -172,15 +172,16 @@ _OF_SCENE = {
     "add_force(carom.forces.CurveSpring(...)), a rod add_joint(carom.joints.Distance(...))":
         "add_cable add_string add_tether add_chain",
     "a conveyor is a fixed part whose surface moves: add_half_space(..., surface_velocity=), or add_static":
-        "add_conveyor add_belt add_conveyor_belt add_treadmill",
+        "add_conveyor add_conveyor_belt add_treadmill",
     "a joint that is switched on is stated by add_joint and switch(joint, at=, off=False); "
     "in a loop of your own by carom.Run.switch": "attach grasp",
     "switch(joint, at=) takes a joint out of the motion": "detach release break_joint add_switch disable",
     "a turntable is a fixed part whose surface turns: add_half_space(..., surface_spin=), or add_static":
         "add_turntable",
     "stairs are made of static boxes by add_static": "add_stairs add_steps",
-    "a rope over wheels is add_rope, with carom.Pulley; a belt is add_joint(carom.joints.Belt(...))":
+    "a rope over wheels is add_rope, with carom.Pulley; a belt of two is add_joint(carom.joints.Belt(...))":
         "add_pulley add_tendon add_belt_drive",
+    "a belt over several wheels is add_belt, with carom.Pulley": "add_serpentine add_chain_drive add_tensioner",
     "a bushing is add_force(carom.forces.Bushing(...))": "add_bushing add_mount",
     "gravity is an attribute: scene.gravity = (0, 0, -9.81)": "set_gravity",
     "it is stated by set_contact_default, or for one pair by add_contact":

@@ -33,7 +33,7 @@ from carom.scene.all_pairs import PairTable
 from carom.scene.more_forces import has_kinks
 from carom.scene.scene import Scene
 from carom.status import Status
-from carom.stepping import record, time_loop
+from carom.stepping import load_limits, record, time_loop
 from carom.stepping.crowd.layout import SPOTS, new_crowd, no_crowd, roomier_crowd
 from carom.stepping.energy_balance import new_watch
 from carom.stepping.first_state import check_joints, check_stops
@@ -66,6 +66,8 @@ class Run:
 
     #: is asked at pauses; True interrupts the run
     to_stop: Callable[[], bool] = staticmethod(lambda: False)
+    #: loads of joints at which the loop is left (`carom.watch`)
+    limits: load_limits.LoadLimits | None = None
     #: what a run passes to compiled code has one type, whatever its scene and method
     call = Entries()
     costs = costs  # for the progress bar
@@ -345,8 +347,12 @@ class Run:
     def take_steps(self, until: int) -> int:
         """Continue to step number `until`; return a status, or PAUSE."""
         while True:
-            state = (self.model, self.data, self.method, self.islands, self.grid, until)
-            code = self.call(time_loop.run, *state)
+            state = (self.model, self.data, self.method, self.islands, self.grid)
+            if self.limits is None:
+                code = self.call(time_loop.run, *state, until)
+            else:
+                self.limits.place["until"] = until
+                code = self.call(load_limits.run_within, *state, self.limits)
             if code != r.GROW:
                 return code
             self.grow(self.work.step[0].grow)

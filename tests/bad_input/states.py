@@ -37,6 +37,19 @@ def stated():
         p = parts()
         return p.scene.add_constraint, dict(definition=definition(p), name="mine", replace=True)
 
+    def belted():
+        p = parts()
+        for k in range(2):
+            wheel = p.scene.add_body(
+                carom.Cylinder(0.1, 0.02), mass=1.0, position=(5 + k, 0, 0), name=f"w{k}"
+            )
+            p.scene.add_joint(joints.Revolute((5 + k, 0, 0), (0, 0, 1)), carom.GROUND, wheel)
+        over = [carom.Pulley(name, 0.1, (0, 0, 1)) for name in ("w0", "w1")]
+        return p.scene.add_belt, dict(
+            over=over, tension=10.0, stiffness=1e4, damping=1.0, slack=0.0, restitution=0.0,
+            impact_law="newton", name="new",
+        )  # fmt: skip
+
     three = (1.0, 0.0, 0.0)
     number = dict(restitution=0.5, friction=0.1, friction_held=0.1, stiffness=1.0, rolling_friction=0.0,
                   pivoting_friction=0.0, tangential_restitution=0.5)  # fmt: skip
@@ -176,6 +189,7 @@ def stated():
             impact_law="newton", coordinate=0, name="new",
         ),
         "Scene.switch": of_scene("switch", part="@hinge", at=0.5, off=True, name="new"),
+        "Scene.add_belt": belted,
         "Scene.add_rope": of_scene(
             "add_rope", over=["ball", "box"], length=100.0, stiffness=None, damping=0.0, restitution=0.5,
             impact_law="newton", name="new",

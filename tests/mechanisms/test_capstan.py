@@ -59,6 +59,40 @@ def test_at_the_limit(turns, factor, holds):
     assert s["rope"].mode[-1] == ("sticking" if holds else "slipping")
 
 
+def posts(masses, frictions, places, **rope):
+    """Two loads on a rope over posts of the ground, beneath those that are lower than the first."""
+    scene = carom.Scene(gravity=(0, 0, -G))
+    for name, x, mass in zip("ab", (-R, places[-1][0] + R), masses):
+        scene.add_body(carom.Sphere(0.03), mass=mass, position=(x, 0, -1), name=name)
+    guides = [
+        carom.Pulley(GROUND, R, (0, 1 if z >= 0 else -1, 0), mu, center=(x, 0, z))
+        for mu, (x, z) in zip(frictions, places)
+    ]
+    scene.add_rope(["a", *guides, "b"], name="rope", **rope)
+    return scene
+
+
+@verifies("Pulley", r"guides in series: $T_2 = T_1 e^{\sum_i \mu_i\varphi_i}$", "closed form")
+@pytest.mark.parametrize(("factor", "holds"), [(1 - 1e-6, True), (1 + 1e-6, False)])
+@pytest.mark.parametrize("middle", [0.0, 0.4])
+def test_posts_in_series_at_the_limit(middle, factor, holds):
+    """Over a post, beneath a second one, over a third: the exponents add up."""
+    steep = np.arctan2(0.5, 1.0) + np.arcsin(2 * R / np.hypot(1.0, 0.5))
+    outer = 0.5 * np.pi + steep
+    most = np.exp(0.3 * outer + middle * 2 * steep + 0.2 * outer)
+    places = [(0.0, 0.0), (1.0, -0.5), (2.0, 0.0)]
+    for large in (0, 1):
+        masses = [1.0, 1.0]
+        masses[large] = factor * most
+        s = carom.simulate(posts(masses, (0.3, middle, 0.2), places), 0.5, rtol=1e-10)
+        fallen = -1 - s["ab"[large]].position[-1, 2]
+        a = (factor - 1) * most * G / (factor * most + most)
+        assert abs(fallen - (0.0 if holds else 0.5 * a * 0.25)) < 1e-11
+        assert s["rope"].mode[-1] == ("sticking" if holds else "slipping")
+        tension = s["rope"].tension[-1]
+        agree(tension[large] / tension[1 - large], min(factor, 1.0) * most, rtol=1e-9)
+
+
 @pytest.mark.parametrize(("how", "error"), HOW)
 def test_it_stops_and_is_held(how, error):
     """A load that goes down is slowed down, (E m - M) g/(M + E m), and is held."""
@@ -94,6 +128,40 @@ def test_a_jerk(e, large):
     lost = 0.5 * (1 + large) * v * v - 0.5 * (after**2 @ (1.0, large))
     np.testing.assert_allclose(-s.impacts.energy_change[0], lost, atol=1e-9)
     np.testing.assert_allclose(after.sum(), -e * 2 * v, atol=1e-9)
+
+
+def jerk(rng, **rope):
+    """Simulate a rope with slack over a post or a wheel, with e = 1 and drawn masses, speeds and friction."""
+    on = GROUND if rng.random() < 0.5 else "wheel"
+    slack = rng.uniform(0.0, 0.1)
+    scene = post(
+        10.0 ** rng.uniform(-0.5, 0.5, 2), rng.uniform(0.05, 0.6), rng.normal(), on, int(rng.integers(2)),
+        rng.uniform(-1.6, -1.0, 2), restitution=1.0, **rope,
+    )  # fmt: skip
+    scene.replace("rope", upper=scene["rope"].upper + slack)
+    for name in "ab":
+        scene.replace(name, velocity=scene[name].velocity + (0.3 * rng.normal(), 0, rng.normal()))
+    return carom.simulate(scene, 0.25, step=5e-3)
+
+
+def test_jerks_gain_nothing_and_what_newtons_law_gains_is_said():
+    """By default a rope that rubs returns at most what it took; a law that adds energy says so."""
+    gains = []
+    for seed in range(40):
+        ours, newton = (
+            jerk(np.random.default_rng([72, seed]), **rope)
+            for rope in ({}, {"impact_law": "newton"})
+        )
+        exchanged = np.max(ours.kinetic_energy)
+        assert np.diff(ours.ledger.impacts).max() < 1e-13 * exchanged, seed
+        assert ours.warnings == (), seed
+        assert abs(ours.ledger.residual).max() < 1e-9 * exchanged, seed
+        gain = newton.impacts.energy_change[newton.impacts.energy_change > 0.0].sum()
+        gains.append(gain / np.max(newton.kinetic_energy))
+        if gains[-1] > 1e-6:
+            assert newton.warnings[0].startswith("Newton's law with friction added energy"), seed
+    assert np.count_nonzero(np.array(gains) > 1e-6) > 5
+    assert np.any((np.array(gains) > 1e-6) & (np.array(gains) < 1e-4))
 
 
 @pytest.mark.parametrize(("how", "error"), HOW)
@@ -166,10 +234,20 @@ def test_a_wheel_that_spins_takes_the_rope_along():
     "Pulley", r"$T_2 = T_1 e^{\mu\varphi}$ with an angle that changes", "own integration: SciPy"
 )
 @pytest.mark.parametrize(("how", "error"), [({}, 1e-6), ({"rtol": 1e-10}, 1e-9)])
-def test_a_load_that_swings(how, error):
-    """The angle on the post follows the strand: against an integration of its own."""
+@pytest.mark.parametrize("other", [None, 0.05, 0.25])
+def test_a_load_that_swings(how, error, other):
+    """The angle on the post, the last of two, follows the strand: against an integration of its own."""
     m1, m2, mu, v = 1.0, 3.0, 0.15, 0.8
+    more = 0.0 if other is None else (other - mu) * 0.5 * np.pi
     scene = post((m1, m2), mu)
+    if other is not None:
+        scene.remove("rope")
+        scene.replace("a", position=(-1 - R, 0, -1))
+        guides = [
+            carom.Pulley(GROUND, R, (0, 1, 0), k, center=(x, 0, 0))
+            for k, x in ((other, -1), (mu, 0))
+        ]
+        scene.add_rope(["a", *guides, "b"], name="rope")
     scene.replace("b", velocity=(v, 0, 0))
     s = carom.simulate(scene, 0.5, **how)
 
@@ -185,7 +263,7 @@ def test_a_load_that_swings(how, error):
         length, e = strand(x, z)
         turn = (e[0] * vz - e[1] * vx) / length
         phi = np.pi + np.arctan2(-e[0], -e[1])
-        grip = np.exp(mu * phi)  # b goes down, all the time
+        grip = np.exp(mu * phi + more)  # b goes down, all the time
         # z1'' = T1/m1 - g, s'' = e.r'' + l turn^2 = z1'', r'' = -T2 e/m2 + g
         T1 = (G - G * e[1] + length * turn**2) / (1 / m1 + grip / m2)
         T2 = grip * T1
@@ -241,6 +319,15 @@ def test_beside_a_wheel_without_slip():
     np.testing.assert_allclose(s["rope.2"].tension[-1], (tensions[1], 3 * (G - a)), rtol=1e-8)
 
 
+@pytest.mark.bits
+def test_a_file_has_all_guides(tmp_path):
+    scene = posts((1.0, 1.5), (0.1, 0.2), [(0.0, 0.0), (1.0, 0.0)])
+    whole = goes_on(scene, 0.4, tmp_path / "run.h5", step=1e-2)
+    again = carom.Solution.load(tmp_path / "run.h5").scene
+    assert again.stops[0].joint.guides == scene.stops[0].joint.guides
+    np.testing.assert_array_equal(carom.simulate(again, 0.4, step=1e-2).position, whole.position)
+
+
 def test_files_and_changes(tmp_path):
     scene = post((1.0, 2.0), 0.2, length=2.0 + np.pi * R + 0.02)
     path = tmp_path / "run.h5"
@@ -259,7 +346,8 @@ def test_files_and_changes(tmp_path):
     [
         ({"stiffness": 10.0}, "stiffness must be left out of a rope with friction"),
         ({"over": 2}, "friction must be above 0 for one pulley"),
-        ({"wheel": "free"}, r"must have a Revolute joint about its axis on carom\.GROUND"),
+        ({"over": 2, "wheel": "free"}, "friction must be above 0 for one pulley"),
+        ({"wheel": "free"}, r"must have a Revolute joint about its axis, on carom\.GROUND"),
         ({"friction": -0.1}, "friction must be"),
         ({"turns": 0.5}, "turns must be"),
     ],
@@ -267,7 +355,9 @@ def test_files_and_changes(tmp_path):
 def test_wrong_input(more, message):
     scene = post((1.0, 1.0), 0.1)
     scene.add_body(carom.Sphere(0.1), mass=1.0, position=(0, 0, 1), name="free")
-    other = carom.Pulley(GROUND, R, (0, 1, 0), friction=0.1, center=(1, 0, 0))
+    scene.add_body(carom.Sphere(0.1), mass=1.0, position=(1, 0, 0), name="moved")
+    scene.add_joint(joints.Fixed(), GROUND, "moved")
+    other = carom.Pulley("moved", R, (0, 1, 0), friction=0.1, center=(1, 0, 0))
 
     def add(stiffness=None, over=1, wheel=GROUND, friction=0.2, turns=0):
         guide = carom.Pulley(wheel, R, (0, 1, 0), friction, center=(0, 0, 0), turns=turns)

@@ -131,6 +131,19 @@ def test_a_spring_reaches_from_end_to_end(hung, tmp_path):
     assert {"wall", "door"} <= set(file.nodes)
 
 
+def test_a_spring_that_is_cut_has_no_size(tmp_path):
+    pytest.importorskip("pygltflib")
+    scene = carom.Scene()
+    box = scene.add_body(carom.Box(0.2, 0.2, 0.2), mass=1.0, position=(0, 0, -0.5))
+    scene.add_force(carom.forces.Spring(40.0, (0, 0, 0.2), (0, 0, -0.4)), box, name="cut")
+    scene.switch("cut", at=0.3)
+    times, sizes = Gltf(carom.simulate(scene, 0.5).export(tmp_path / "cut.glb", fps=100)).track(
+        "spring1", "scale"
+    )
+    assert np.all(sizes[times < 0.2999, 2] > 0.5)
+    assert np.all(sizes[times > 0.3001] == 0.0)
+
+
 def test_frames_of_a_part_of_the_run_at_a_slower_speed(thrown, tmp_path):
     pytest.importorskip("pygltflib")
     path = thrown.export(tmp_path / "slow.glb", fps=20, speed=0.1, start=0.05, end=0.1)

@@ -8,7 +8,10 @@ from hypothesis import strategies as st
 import carom
 from carom.geometry import quaternion
 from carom.visual import bodies
+from carom.visual.films import still
 from carom.visual.viewer import frames, planes, strikes
+from carom.visual.viewer.pack import Packer
+from carom.visual.viewer.page import header
 from carom.visual.viewer.planes import grid_lines, round_length
 from carom.visual.viewer.show import playing_speed, show_of
 from files.scenes import pile
@@ -133,6 +136,50 @@ def test_springs_and_rods_join_their_anchors():
         assert np.allclose(place, end, atol=1e-15)
         assert link.parent == -1
     assert np.array_equal(bodies.ground_points(scene), [(0, 0, 4), (0, 0, 0)])
+
+
+def parted():
+    """A stone on a string that breaks, a box on a spring that is cut at .3 s, and one that comes at .2 s."""
+    scene = carom.Scene()
+    scene.add_body(carom.Sphere(0.08), mass=1.0, position=(-1, 0, 0), name="stone")
+    string = carom.joints.Tether(1.0, anchor_parent=(0, 0, 0))
+    scene.add_joint(string, carom.GROUND, "stone", name="string", breaks_at=20.0)
+    scene.add_body(carom.Box(0.2, 0.2, 0.2), mass=1.0, position=(0.8, 0, -0.5), name="box")
+    for name, x in (("cut", 0.8), ("comes", 0.9)):
+        spring = carom.forces.Spring(40.0, (x, 0, 0.2), (x, 0, -0.5), rest_length=0.5)
+        scene.add_force(spring, "box", name=name)
+    scene.switch("cut", at=0.3)
+    scene.switch("comes", at=0.2, off=False)
+    return carom.simulate(scene, 0.6)
+
+
+def test_what_broke_or_was_switched_is_drawn_while_it_is_there():
+    run = parted()
+    broke = run.switches.time[-1]
+    times = {"cut": (-1.0, 0.3), "comes": (0.2, 1.0), "string": (-1.0, broke)}
+    links = {link.part: link for link in bodies.links_in(run)}
+    assert set(links) == set(times)
+    for name, (begin, end) in times.items():
+        for t in (0.0, 0.1999, 0.2, 0.2999, 0.3, broke - 1e-9, broke, 0.6):
+            assert links[name].is_there(t) == (begin <= t < end), (name, t)
+    show = show_of(run)
+    made = header(show, Packer())["links"]
+    there = {link.part: one["there"] for link, one in zip(show.links, made)}
+    assert there["cut"] == [[-1.0, 0.2], [0.2, 0.3]]
+    assert there["comes"] == [[0.2, 0.3], [0.3, broke], [broke, 1.6]]
+    # without switches nothing is said
+    assert all(link.there is None for link in bodies.links_in(carom.simulate(pile(2), 0.01)))
+
+
+def test_a_still_shows_the_string_until_it_breaks():
+    run = parted()
+    broke = run.switches.time[-1]
+    middle = {}
+    for t in (broke - 1e-3, broke + 1e-3):
+        picture = still(run, t, size=(320, 240), view="front", clock=False).astype(int)
+        middle[t] = np.count_nonzero(np.all(abs(picture - 70) < 30, axis=2))  # of cords
+    first, second = middle.values()
+    assert second < 0.8 * first
 
 
 def test_equal_shapes_are_one_part():

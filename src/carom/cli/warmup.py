@@ -134,10 +134,10 @@ def work() -> list[tuple[str, str, Callable[[], object]]]:
 
 
 def read_reports() -> tuple:
-    """Return what forces exert, and the motion and reactions of joints, in a short run."""
+    """Return what forces exert, and motion and reactions of joints that may break, in a short run."""
     import carom
 
-    scene = _linked(False)
+    scene = _linked(False, breaks_at=1e9)
     scene.add_force(carom.forces.JointSpring("joint1", 1.0), name="spring")
     s = carom.simulate(scene, 0.01, step=5e-3)
     return s["spring"].power, s["joint1"].coordinate, s["joint1"].force
@@ -172,7 +172,7 @@ def _pile(count: int):
     return scene
 
 
-def _linked(loop: bool):
+def _linked(loop: bool, **breaks):
     """Return two balls on rods from the ground, one of which strikes it; joined by a rod for a loop."""
     import carom
 
@@ -185,7 +185,7 @@ def _linked(loop: bool):
             angular_velocity=(0, 1.0, 0),
         )  # fmt: skip
         joint = carom.joints.Revolute(anchor=(x - 1.0, 0, 0.105), axis=(0, 1, 0))
-        scene.add_joint(joint, carom.GROUND, ball)
+        scene.add_joint(joint, carom.GROUND, ball, **breaks)
         balls.append(ball)
     scene.add_contact(balls[0], ground, restitution=0.5, friction=0.2)
     if loop:

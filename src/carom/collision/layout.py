@@ -121,6 +121,21 @@ PAIR_STATE = [
 ]
 
 
+KNOWN_POSES = 8  # of two profiles, of which the places found last are kept
+PLACES_OF_POSE = 12  # places of one pose that are kept
+
+#: what was found in one pose of two profiles (`two_profiles`)
+KNOWN_POSE = [
+    ("R", "f8", (3, 3)),  # as in PAIR_STATE; 0: nothing is known
+    ("p", "f8", 3),
+    ("first", "i8", 2),  # first rows of both curves
+    ("reach", "f8"),  # above the least distance of rows, up to which places were sought
+    ("cross", "i8", 2),  # rows that cross, -1 for none
+    ("total", "i8"),
+    ("next", "i8"),  # of the first pose: which one is replaced next
+]
+
+
 class Hulls(NamedTuple):
     """Vertices and faces of all hulls, in the axes of their solids, and which of them may be farthest."""
 
@@ -139,6 +154,8 @@ class PairWork(NamedTuple):
 
     state: np.recarray  # (1,) PAIR_STATE
     found: np.recarray  # (96,) TOUCH_POINT, in axes of B, points on the cores
+    poses: np.recarray  # (KNOWN_POSES,) KNOWN_POSE of two profiles
+    known: np.recarray  # (KNOWN_POSES, PLACES_OF_POSE) TOUCH_POINT found there
 
 
 class Placed(NamedTuple):
@@ -164,6 +181,8 @@ class Pair(NamedTuple):
     hulls: Hulls
     state: np.record  # PAIR_STATE
     found: np.recarray  # (96,) TOUCH_POINT, in axes of B, points on the cores
+    poses: np.recarray  # (KNOWN_POSES,) KNOWN_POSE of two profiles
+    known: np.recarray  # (KNOWN_POSES, PLACES_OF_POSE) TOUCH_POINT found there
 
 
 @cache
@@ -176,7 +195,8 @@ def no_hulls() -> Hulls:
 
 def new_pair_work() -> PairWork:
     """Return the workspace of the kernels of pairs."""
-    return PairWork(table(PAIR_STATE, 1), table(TOUCH_POINT, 96))
+    poses, known = table(KNOWN_POSE, KNOWN_POSES), table(TOUCH_POINT, KNOWN_POSES, PLACES_OF_POSE)
+    return PairWork(table(PAIR_STATE, 1), table(TOUCH_POINT, 96), poses, known)
 
 
 def new_points(count: int = MOST_POINTS) -> np.recarray:

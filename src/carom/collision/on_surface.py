@@ -271,7 +271,7 @@ def _on_planes(pair, surface, lowest, reach):
 @unit
 def on_surface(a, b, hulls, reach, work):
     """Find the points of a solid and a surface: their number goes to ``work.state[0].total``."""
-    pair = Pair(a, b, hulls, work.state[0], work.found)
+    pair = Pair(a, b, hulls, work.state[0], work.found, work.poses, work.known)
     s, surface = pair.state, hulls.surfaces[b.surface]
     lowest = 0, math.inf
     if a.kind == ELLIPSOID:
@@ -296,7 +296,9 @@ def feature_on_surface(a, b, hulls, feature, work, out):
     Of a list of the lowest points it might be left out.
     """
     enter(work.state[0], a, b)
-    pair = by_reference(Pair(a.solid, b.solid, hulls, work.state[0], work.found))
+    pair = by_reference(
+        Pair(a.solid, b.solid, hulls, work.state[0], work.found, work.poses, work.known)
+    )
     s, surface = pair.state, hulls.surfaces[b.solid.surface]
     sheet, part = sheet_of(feature), OF_SUPPORT
     if feature >> 60 == EDGES:

@@ -64,7 +64,9 @@ def touch_unit(a, b, hulls, reach, work, out):
     if flip:
         a, b = b, a
     enter(work.state[0], a, b)
-    pair = by_reference(Pair(a.solid, b.solid, hulls, work.state[0], work.found))
+    pair = by_reference(
+        Pair(a.solid, b.solid, hulls, work.state[0], work.found, work.poses, work.known)
+    )
     if b.solid.kind == CURVED_GROUND:
         on_surface(a.solid, b.solid, hulls, reach, work)
         count = work.state[0].total

@@ -111,9 +111,15 @@ def find_touches(system, contact, state, reach, work):
 
 
 @by_kind("contact")
+def active_reach(system, contact):
+    """Return how far above the least gap active points are sought, in the iterations of a step."""
+    return ACTIVE_REACH * smaller(contact)
+
+
+@by_kind("contact")
 def touch_of_active(system, contact, feature, p, state, work):
     """Find the points; return which has a feature, or replaces the one that was at p (body axes)."""
-    list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+    list_touches(system, contact, state, active_reach(system, contact), work)
     return which_touch(system, contact, feature, p, state, work)
 
 

@@ -5,6 +5,7 @@ ACTIVE_REACH = 0.2  #: size of the smaller body: for active points, which stay s
 #: through another
 SAFE_DISPLACEMENT = 0.25
 SAFE_ROTATION = 0.5  #: rad: greatest in a step: points that are nearest at both ends are so in between
+TOOTH_REACH = 2e-3  #: size of the smaller body: the same of two profiles, wider where a point is lost
 REACH = 1e-3  #: size of the smaller body: points are listed up to this above the least gap, and are one patch
 PLACE_ERROR = 1e-11  #: size of the body: nearer corners are one; depth that a return to the surface may leave
 DEPTH = 8.0  #: tolerance of a place on a surface: distance at which a normal is looked along

@@ -124,6 +124,24 @@ def add_touch(touch, work):
 
 
 @kernel
+def load_bodies(system, state, work):
+    """Write the wrenches of applied forces; those of contacts are to be added (`add_touch`)."""
+    applied_wrenches(system, state, True, work)
+    add_stiff(system, state, work)
+
+
+@kernel
+def solve_reactions(system, augment, state, work):
+    """Write the wrench of each joint on its child into its record, under the wrenches on the bodies."""
+    for j in range(system.joints.shape[0]):
+        acceleration_bias(system, j, state, work)
+    solve(system, state, True, work)
+    share(system, augment, state, work)
+    for j in range(system.joints.shape[0]):
+        report_wrench(system, j, state, work.joint[j].reaction)
+
+
+@kernel
 def expect_turn(system, saved, k, i):
     """Write where coordinate i is expected at saved state k, before its value is known.
 
@@ -182,17 +200,12 @@ def reactions(system, augment, saved, rows, work, out):
     for k in range(rows[0], rows[1]):
         state, work.moment[0].time = saved.state[k], saved.series[k].t
         follow_turns(system, saved, k)
-        applied_wrenches(system, state, True, work)
-        add_stiff(system, state, work)
+        load_bodies(system, state, work)
         while h < touch.shape[0] and touch[h].saved == k:
             add_touch(touch[h], work)
             h += 1
+        solve_reactions(system, augment, state, work)
         for j in range(system.joints.shape[0]):
-            acceleration_bias(system, j, state, work)
-        solve(system, state, True, work)
-        share(system, augment, state, work)
-        for j in range(system.joints.shape[0]):
-            report_wrench(system, j, state, work.joint[j].reaction)
             for i in range(6):
                 out[k, j, i] = work.joint[j].reaction[i]
 

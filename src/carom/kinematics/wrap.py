@@ -7,6 +7,9 @@ the rope, and F along its slip s on the guide, half the difference of what is be
 
 so with the row u_t = a s', a = 2 tanh(mu phi/2)/mu, and the force F/a along it, the rope is a contact with the
 coefficient mu, whose normal row is the rate of its slack. The angle phi on the guide follows the strands.
+
+On several guides, between which nothing moves but the rope, it has one slip, and mu phi is the sum of theirs.
+The angles of the first and of the last follow the strands outside.
 """
 
 from __future__ import annotations
@@ -19,13 +22,20 @@ from carom.kinematics.coordinates.strand import angle_of, turning_of
 
 @kernel
 def arc(system, wrap, state):
-    """Return the angle phi that lies on the guide [rad], 0 where the rope has left it."""
-    phi = wrap.arc
+    """Return the angle phi that lies on the guide [rad], 0 where the rope has left it.
+
+    Of several guides it is the sum of mu phi over the mu of the first.
+    """
+    first, last = wrap.arc[0], wrap.arc[1]
     for k in range(2):
         if wrap.strand[k] >= 0:
-            c, way = system.relations.coordinates[wrap.strand[k]], wrap.way if k == 1 else -wrap.way
-            phi += way * (angle_of(system, c, wrap.angle[k], state) - wrap.angle[k])
-    return max(phi, 0.0)
+            c = system.relations.coordinates[wrap.strand[k]]
+            turned = wrap.way[k] * (angle_of(system, c, wrap.angle[k], state) - wrap.angle[k])
+            if wrap.guide[k] == 0:
+                first += turned
+            else:
+                last += turned
+    return max(first, 0.0) + wrap.between + wrap.share[1] * max(last, 0.0)
 
 
 @kernel
@@ -41,5 +51,5 @@ def grip_rate(system, wrap, state):
     for k in range(2):
         if wrap.strand[k] >= 0:
             c = system.relations.coordinates[wrap.strand[k]]
-            rate += (wrap.way if k == 1 else -wrap.way) * turning_of(c, state)
+            rate += wrap.share[wrap.guide[k]] * wrap.way[k] * turning_of(c, state)
     return rate / math.cosh(0.5 * wrap.friction * arc(system, wrap, state)) ** 2

@@ -158,17 +158,20 @@ TERM = [
     ("parent_side", "i8"),
 ]
 
-#: a rope round a guide on which it rubs (`carom.kinematics.wrap`)
+#: a rope round guides on which it rubs (`carom.kinematics.wrap`): the first and the last, or one alone
 WRAP = [
-    (
-        "strand",
-        "i8",
-        2,
-    ),  # coordinates of the strands before and behind it, -1 for one that nothing moves
+    # coordinates of the strands before and behind them, -1 for one that nothing moves
+    ("strand", "i8", 2),
     ("angle", "f8", 2),  # of these at the start
-    ("way", "f8"),  # 1 if it goes round by the axis of its strands, else -1
-    ("arc", "f8"),  # angle on the guide at the start
-    ("friction", "f8"),
+    ("way", "f8", 2),  # how each changes the angle on its guide: 1 or -1
+    ("guide", "i8", 2),  # which guide that is
+    ("arc", "f8", 2),  # angle on each guide at the start; 0 for a last one that is the first
+    ("share", "f8", 2),  # its friction, of that of the first
+    (
+        "between",
+        "f8",
+    ),  # angles on the guides between these, times their friction, of that of the first
+    ("friction", "f8"),  # of the first
 ]
 
 #: rows of the user's: a(q, t) v = b(q, t), as a function (t, poses) -> (rows, 6 bodies + 1)

@@ -20,6 +20,7 @@ from carom.scene.actuators import Controlled
 from carom.scene.constraints import Coupling, Rows
 from carom.scene.coordinates import (
     Axial,
+    BodyTurn,
     Bush,
     Combination,
     Gap,
@@ -102,8 +103,12 @@ class Coordinates:
                 self._sum(tuple(zip(own, row)))
             made = table(arrays.WRAP, 1)
             made.strand[0] = [own[t] if t >= 0 else -1 for t in wrap.strands]
-            made.angle[0], made.way, made.arc = wrap.angles, wrap.way, wrap.arc
-            made.friction = wrap.friction
+            made.angle[0], made.friction = wrap.angles, wrap.friction
+            first, *between, last = (*wrap.guides, (wrap.way, 0.0, 0.0))[: max(2, len(wrap.guides))]
+            made.way[0], made.guide[0, 1] = (-first[0], last[0]), int(bool(wrap.others))
+            made.arc[0] = first[1], last[1]
+            made.share[0] = 1.0, last[2] / wrap.friction
+            made.between = sum(arc * mu for _, arc, mu in between) / wrap.friction
             self.wraps[self.sums[key]] = made
         return self.sums[key]
 
@@ -146,10 +151,11 @@ class Coordinates:
             made.kind, made.length = arrays.OF_LIMIT["strand"], length.radii[0] - length.radii[1]
             made.parent_frame[0] = triad(length.axis)
             made.begin = length.start
-        if isinstance(length, (Bush, Axial)):
+        if isinstance(length, (Bush, Axial, BodyTurn)):
             frame = triad(length.axis)
-            made.kind = arrays.PRISMATIC if isinstance(length, Axial) else arrays.OF_LIMIT["bush"]
-            made.length = 0.0 if isinstance(length, Axial) else length.radius
+            kinds = {Bush: arrays.OF_LIMIT["bush"], Axial: arrays.PRISMATIC}
+            made.kind = kinds.get(type(length), arrays.REVOLUTE)
+            made.length = length.radius if isinstance(length, Bush) else 0.0
             made.parent_frame[0] = self.placement.axes(length.parent, frame)
             made.child_frame[0] = self.placement.axes(length.child, frame)
         made.parent, made.child = length.parent.index, length.child.index

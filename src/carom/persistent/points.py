@@ -22,6 +22,7 @@ from carom.contact.kinds.level_surfaces import is_beside, is_of_moving, related
 from carom.contact.kinds.partner import smaller
 from carom.contact.kinds.rim import place_of, same_point
 from carom.contact.operations import (
+    active_reach,
     add_touch,
     find_active_touch,
     find_touches,
@@ -30,7 +31,7 @@ from carom.contact.operations import (
     place,
 )
 from carom.contact.point_lists import is_active, write_closed, write_turning
-from carom.contact.thresholds import ACTIVE_REACH, NORMAL_ERROR, PLACE_ERROR, REACH
+from carom.contact.thresholds import NORMAL_ERROR, PLACE_ERROR, REACH
 from carom.geometry.rotation import cross, rotate_back
 from carom.geometry.thresholds import RESOLUTION, ROUND_OFF
 from carom.kinematics.anisotropy import lengths_of_tangents, turn_plain
@@ -98,7 +99,7 @@ def add_pair(system, data, i, k) -> int:
         return k
     if is_of_moving(contact) and has_left(system, data, c):
         return k
-    list_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+    list_touches(system, contact, state, active_reach(system, contact), work)
     m = nearest_touch(work).normal
     n = (m[0], m[1], m[2])
     if not on_face(contact, active, i, n, state):
@@ -176,7 +177,7 @@ def on_face(contact, active, i, n, state):
 def add_face(system, data, c, i, k):
     """Add all corners of a face; the active point i stands for those that are not active."""
     state, work, contact, near = data.work.stage, data.work, system.contacts[c], math.inf
-    count = find_touches(system, contact, state, ACTIVE_REACH * smaller(contact), work)
+    count = find_touches(system, contact, state, active_reach(system, contact), work)
     for t in range(count):
         near = min(near, work.touches[t].gap + REACH * smaller(contact))
     for t in range(count if near < 2.0 * REACH * smaller(contact) else 0):

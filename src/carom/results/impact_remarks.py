@@ -14,6 +14,8 @@ from carom.status import Remark
 
 #: energy of a jam, of what the run exchanges, below which slip of round-off has jammed (a wheel that rolls)
 _ROUND_OFF = 1e-9
+#: of `Options.energy_tolerance`: energy that a law adds and that is said. It is no error, so nothing hides it
+GAIN_SHARE = 1e-3
 #: the law "moreau", in sentences
 BY_FINAL_SLIP = 'Friction by the final slip (impact_law="moreau")'
 #: speed: of impacts that count as elastic, by that at which e is 1
@@ -111,7 +113,7 @@ def _without_adhesion(run) -> list[str]:
 
 
 def _gains(rows, run) -> list[str]:
-    """Return a sentence about the energy that Newton's law with friction has added, if beyond the tolerance.
+    """Return a sentence about the energy that Newton's law with friction has added, if beyond round-off.
 
     Here of single points: with laws that have a path several return at most what they have absorbed. The
     energy of an impact is that of its relative velocity, u.W^-1 u/2.
@@ -121,7 +123,8 @@ def _gains(rows, run) -> list[str]:
         return []
     watch, system = run.watch[0], run.compiled.system
     single = gains & (rows["together"] == 1)
-    if not rows["energy_change"][single].sum() > watch.tolerance * watch.exchanged:
+    least = GAIN_SHARE * watch.tolerance * watch.exchanged
+    if not rows["energy_change"][single].sum() > least:
         return []
     laws = law_of(system, system.contacts)
     able = np.isin(laws["impact_law"], impact_laws.GAINING) & (laws["friction"] > 0.0)
@@ -129,8 +132,8 @@ def _gains(rows, run) -> list[str]:
     own = own[np.isin(own["contact"], system.contacts["number"][able])]
     u, gain = own["before"][:, :, None], own["energy_change"]
     part = 2.0 * gain / (u.transpose(0, 2, 1) @ np.linalg.pinv(own["W"]) @ u)[:, 0, 0]
-    own, gain, part = (column[part > watch.tolerance] for column in (own, gain, part))
-    if not gain.sum() > watch.tolerance * watch.exchanged:
+    own, gain, part = (column[part > _ROUND_OFF] for column in (own, gain, part))
+    if not gain.sum() > least:
         return []
     k = int(np.argmax(gain))
     after = np.isin(laws["impact_law"], impact_laws.WITHOUT_PATH)
@@ -153,7 +156,7 @@ def _gains_together(rows, run) -> list[str]:
         return []
     times, first, place = np.unique(own["time"], return_index=True, return_inverse=True)
     gain = np.bincount(place, own["energy_change"], len(times))
-    least = watch.tolerance * watch.exchanged
+    least = GAIN_SHARE * watch.tolerance * watch.exchanged
     if not gain[gain > 0.0].sum() > least:
         return []
     k = int(np.argmax(gain))

@@ -30,7 +30,7 @@ from carom.results.dense_output import curves
 from carom.results.event_tables import JointImpulse, JointImpulseTable
 from carom.results.reports import at_once
 from carom.scene.bodies import Body, HalfSpace
-from carom.scene.coordinates import Bush, Length, kind_of, terms_of
+from carom.scene.coordinates import BodyTurn, Bush, Length, kind_of, terms_of
 from carom.scene.more_forces import JointInertia
 from carom.scene.stops import Stop
 from carom.scene.surfaces import SurfaceDefinition
@@ -224,7 +224,9 @@ class _Mechanism:
                 return
             along = stop.side * impacts.impulse[i, 0]
             for one, k, factor in terms_of(stop.joint, stop.coordinate):
-                if isinstance(one, Length):
+                if isinstance(one, BodyTurn):
+                    rest[one.child.index, 3:] -= factor * along * one.axis
+                elif isinstance(one, Length):
                     self.take_between(one, factor * along, state, rest)
                 else:
                     self.take_along(one, k, factor * along, state, rest)

@@ -41,7 +41,7 @@ def kind_of(joint: Joint | Combination | Length, coordinate: int | str) -> str:
     A combination in which anything slides is a displacement; "" stands for joints that are only named.
     """
     if isinstance(joint, Length):
-        return "slide"
+        return "turn" if isinstance(joint, BodyTurn) else "slide"
     if isinstance(joint, Combination):
         kinds = {kind_of(one, k) for one, k, _ in joint.terms}
         return "slide" if "slide" in kinds else min(kinds)
@@ -257,26 +257,55 @@ class Strand(Length):
         return (*super().index, *self.axis.tolist(), *self.radii.tolist(), self.start)
 
 
+@dataclass(frozen=True, eq=False)
+class BodyTurn(Length):
+    """The angle by which a body has turned about an axis that is fixed in the world: no joint measures it.
+
+    Along it a torque acts on the body alone. The parent is the ground.
+
+    Attributes
+    ----------
+    axis : (3,)
+        The axis, in the world; it keeps its direction in the body, too.
+    """
+
+    axis: np.ndarray
+
+    @property
+    def name(self) -> str:
+        """How it is called in messages."""
+        return f"turn of {self.child.name}"
+
+    @property
+    def index(self) -> tuple:
+        """What tells it from other coordinates."""
+        return "turn", self.child.index, *self.axis.tolist()
+
+
 @dataclass(frozen=True, init=False, eq=False)
 class Wrap(Combination):
-    """The length of a rope, part of which lies round a guide on which it rubs, with its slip on this.
+    """The length of a rope, part of which lies round guides on which it rubs, with its slip on these.
 
-    The slip is half the difference of what is behind the guide and before it, less what a wheel has turned.
+    There is one slip: between several guides nothing moves but the rope. The slip is half the difference of
+    what is behind the guide and before it, less what a wheel has turned.
 
     Attributes
     ----------
     slip : tuple of float
         Factor of each term in the slip [m].
     strands : tuple of two int
-        Numbers of the terms of the strands before and behind the guide, -1 for one that nothing moves.
+        Numbers of the terms of the strands before the (first) guide and behind the (last) one, -1 for one that
+        nothing moves.
     angles : tuple of two float
         Angles of these strands at the start [rad].
     way : int
-        1 if the rope goes round the guide by the axis of its strands, else -1.
+        1 if the rope goes round the guide, the first of several, by the axis of its strands, else -1.
     arc : float
-        Angle that lies on the guide at the start, with whole turns [rad].
+        Angle that lies on it at the start, with whole turns [rad].
     friction : float
-        Coefficient of friction.
+        Coefficient of friction on it.
+    others : tuple
+        Way, arc and friction of each guide that follows.
     """
 
     slip: tuple[float, ...]
@@ -285,6 +314,12 @@ class Wrap(Combination):
     way: int
     arc: float
     friction: float
+    others: tuple[tuple[int, float, float], ...] = ()
+
+    @property
+    def guides(self) -> tuple[tuple[int, float, float], ...]:
+        """Way, arc and friction of all guides."""
+        return ((self.way, self.arc, self.friction), *self.others)
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,12 +7,12 @@ from typing import NamedTuple
 
 from carom import arguments, checks
 from carom.scene.coordinates import Factors
+from carom.scene.endless_belt import SceneBelts
 from carom.scene.forces import AppliedForce, SceneForces
 from carom.scene.friction import FrictionLaw, bound_of, isotropic
 from carom.scene.joint_friction import JointFriction
 from carom.scene.joints import Joint
 from carom.scene.restitution import Restitution
-from carom.scene.rope import SceneRope
 from carom.scene.stops import Stop
 
 
@@ -24,7 +24,7 @@ class Play(NamedTuple):
     friction: AppliedForce | None
 
 
-class ScenePlay(SceneRope, SceneForces):
+class ScenePlay(SceneBelts, SceneForces):
     """The method of `Scene` for play, which consists of stops and a force."""
 
     @arguments.known

@@ -17,8 +17,8 @@ import numpy as np
 from carom import arguments, checks, fields
 from carom.fields import Integer, Number, NumberOrNone, Value, Vector, VectorOrNone, keep
 from carom.geometry.frames import triad
-from carom.scene.bodies import Body, Ground
-from carom.scene.coordinates import Combination, Strand, Wrap
+from carom.scene.bodies import GROUND, Body, Ground
+from carom.scene.coordinates import BodyTurn, Combination, Strand, Wrap
 from carom.scene.forces import AppliedForce
 from carom.scene.joints import Joint
 from carom.scene.restitution import Restitution
@@ -42,9 +42,9 @@ class Pulley:
     Parameters
     ----------
     wheel : Body, str or carom.GROUND
-        The wheel, or the ground for one that does not turn. If the rope does not slip, or rubs on it, it is the
-        child of a `Revolute` joint about this axis on the ground; a wheel that moves is one that it slips over
-        freely. It may also rub on a part that a joint on the ground keeps from turning.
+        The wheel, or the ground for one that does not turn. If the rope does not slip, or rubs on it, it is on
+        a `Revolute` joint about this axis, on the ground or on a body that carries it (the block of a tackle,
+        the arm of a tensioner). It may also rub on a part that a joint on the ground keeps from turning.
     radius : float
         Radius of the rope's centre line [m], above 0.
     axis : (3,)
@@ -53,7 +53,8 @@ class Pulley:
     friction : float, optional
         None (default): the rope does not slip, and turns the wheel (on one of the ground it slips freely). 0:
         it slips freely. Above 0: it slips where the tension at one side is exp(friction angle) times that at
-        the other one, with the angle that it lies round the guide; one guide of each part of a rope may rub.
+        the other one, with the angle that it lies round the guide. One guide of each part of a rope may rub, or
+        several of the ground with nothing that moves between them.
     center : (3,), optional
         Centre, in the world at the start [m]. Default: the mass centre of the wheel; of the ground it must be
         given.
@@ -89,6 +90,15 @@ class _End(NamedTuple):
     turns: int = 0
 
 
+class _Made(NamedTuple):
+    """How a rope is made: with a stiffness, or a law of the jerk by which it gets taut."""
+
+    stiffness: float | None
+    damping: float
+    restitution: float | Restitution
+    law: str | None
+
+
 class SceneRope(SceneStops):
     """The method of `Scene` for ropes."""
 
@@ -101,7 +111,7 @@ class SceneRope(SceneStops):
         stiffness: float | None = None,
         damping: float = 0.0,
         restitution: float | Restitution = 0.0,
-        impact_law: str = "newton",
+        impact_law: str | None = None,
         name: str | None = None,
     ) -> Rope:
         """Add a rope without mass over points and pulleys: it pulls, and does not push.
@@ -128,8 +138,9 @@ class SceneRope(SceneStops):
             Of a rope that stretches, likewise [N s/m]. Default 0.
         restitution : float or Restitution
             Of the jerk by which a rope of fixed length gets taut, from 0 (default) to 1, or its law.
-        impact_law : str
-            As for `add_stop`.
+        impact_law : str, optional
+            As for `add_stop`. Default: ``"stronge"`` where it rubs, since Newton's law with friction may add
+            energy, else ``"newton"``; without friction all laws agree.
         name : str, optional
             Default ``"rope1"``, ``"rope2"``, ... With wheels without slip its parts have the names
             ``"<name>.1"``, ``"<name>.2"``, ..., from the first end on.
@@ -143,8 +154,7 @@ class SceneRope(SceneStops):
         ------
         ValueError
             If the rope has fewer than two ends, axes of neighbours are not parallel, a circle is inside another
-            one, a wheel without slip has no `Revolute` joint about its axis on the ground, or `length` is too
-            short.
+            one, a wheel without slip has no `Revolute` joint about its axis, or `length` is too short.
 
         Examples
         --------
@@ -163,10 +173,7 @@ class SceneRope(SceneStops):
             raise ValueError(
                 "over must begin and end with a body or a point, and have two of them at least"
             )
-        if name is None:
-            every = (*self.stops, *self._parts.parts(AppliedForce))
-            own = {part.name.partition(".")[0] for part in every}
-            name = next(f"rope{k}" for k in count(1) if f"rope{k}" not in own)
+        name = self._free_name("rope") if name is None else name
         parts, least = _parts(ends, self._wheel_terms), sum(s.length for s in _strands(ends))
         if not all(part.terms for part in parts):
             raise ValueError(
@@ -174,14 +181,20 @@ class SceneRope(SceneStops):
             )
         if length is not None:
             length = checks.number("length", length, above=0.0, unit="m")
+        made = _Made(stiffness, damping, restitution, impact_law)
+        return self._laid(name, parts, (least, length), made)
+
+    def _laid(self, name: str, parts: list[_Part], lengths, made: _Made) -> Rope:
+        """Add the parts of a rope: (way at the start, length or None)."""
+        least, length = lengths
         names = [name] if len(parts) == 1 else [f"{name}.{k + 1}" for k in range(len(parts))]
-        c = checks.number("damping", damping, least=0.0, unit="N s/m")
-        if stiffness is not None:
-            k = checks.number("stiffness", stiffness, above=0.0, unit="N/m")
-            if not (isinstance(restitution, (int, float)) and restitution == 0.0):
+        c = checks.number("damping", made.damping, least=0.0, unit="N s/m")
+        if made.stiffness is not None:
+            k = checks.number("stiffness", made.stiffness, above=0.0, unit="N/m")
+            if not (isinstance(made.restitution, (int, float)) and made.restitution == 0.0):
                 raise ValueError(
                     "restitution must be left out of a rope with a stiffness, which gets taut without an "
-                    f"impact, got {checks.shown(restitution)}"
+                    f"impact, got {checks.shown(made.restitution)}"
                 )
             if any(part.wrap for part in parts):
                 raise ValueError("stiffness must be left out of a rope with friction on a pulley")
@@ -198,14 +211,21 @@ class SceneRope(SceneStops):
             of = part.wrap or (
                 part.terms[0][0] if len(part.terms) == 1 else Combination._of(part.terms)
             )
+            law = ("stronge" if part.wrap else "newton") if made.law is None else made.law
             stops.append(
                 self._parts.make(
                     Stop, "rope", own, False, joint=of, coordinate=0, upper=part.start + max(0.0, slack),
-                    restitution=restitution, impact_law=impact_law,
+                    restitution=made.restitution, impact_law=law,
                 )
             )  # fmt: skip
             slack = 0.0
         return Rope(tuple(stops))
+
+    def _free_name(self, word: str) -> str:
+        """Return the first of the names word1, word2, ... that no rope has."""
+        every = (*self.stops, *self._parts.parts(AppliedForce))
+        own = {part.name.partition(".")[0] for part in every}
+        return next(f"{word}{k}" for k in count(1) if f"{word}{k}" not in own)
 
     def _springs(self, names, parts, lengths, constants) -> tuple[AppliedForce, ...]:
         """Add the parts of a rope that stretches: (way at the start, length), (stiffness, damping)."""
@@ -259,13 +279,19 @@ class SceneRope(SceneStops):
             return []
         if isinstance(end.part, Ground):
             return []
+        carried = False
         for joint in self._parts.parts(Joint):
-            if joint.kind != "Revolute" or joint.child is not end.part:
+            if joint.kind != "Revolute" or end.part not in (joint.child, joint.parent):
                 continue
             cosine = float(joint.definition.axis @ end.axis)  # pyright: ignore
-            # the torque of a joint acts on both its sides, that of a rope on the wheel alone
             if abs(cosine) > 1.0 - PARALLEL and isinstance(joint.parent, Ground):
                 return [(joint, 0, math.copysign(factor * end.radius, factor * cosine))]
+            carried = carried or abs(cosine) > 1.0 - PARALLEL
+        if carried:
+            # the torque of its joint would act on the carrier, too, that of a rope on the wheel alone
+            assert end.axis is not None
+            turn = BodyTurn(GROUND, end.part, end.part.position, None, end.axis)
+            return [(turn, 0, factor * end.radius)]
         if end.friction > 0.0 and any(
             joint.definition.turn == "rigid" and isinstance(joint.parent, Ground)
             for joint in self._parts.parts(Joint)
@@ -273,8 +299,8 @@ class SceneRope(SceneStops):
         ):
             return []
         raise ValueError(
-            f"wheel {end.part.name!r} must have a Revolute joint about its axis on carom.GROUND, by which the "
-            "rope turns it; over a wheel that moves let it slip: carom.Pulley(..., friction=0)"
+            f"wheel {end.part.name!r} must have a Revolute joint about its axis, on carom.GROUND or on what "
+            "carries it, about which the rope turns it; else let it slip: carom.Pulley(..., friction=0)"
         )
 
 
@@ -328,36 +354,45 @@ def _part_of(ends: list[_End], strands: list[_Strand], wheel_terms) -> _Part:
     start = sum(strand.of.start for strand in strands if strand.of is not None)
     rubs = [k for k, end in enumerate(ends) if end.friction > 0.0]
     if len(rubs) > 1:
-        raise ValueError(
-            "friction must be above 0 for one pulley of each part of a rope between wheels without slip, got "
-            f"{len(rubs)}"
-        )
-    wrap = _wrap(ends, strands, terms, rubs[0], wheel_terms) if rubs else None
+        moves = [one.of for one in strands[rubs[0] : rubs[-1]] if one.of is not None]
+        if moves or not all(isinstance(ends[k].part, Ground) for k in rubs):
+            raise ValueError(
+                "friction must be above 0 for one pulley of each part of a rope between wheels without slip, "
+                f"or for several of the ground with nothing that moves between them, got {len(rubs)}"
+            )
+    wrap = _wrap(ends, strands, terms, rubs, wheel_terms) if rubs else None
     return _Part(terms, start, length, wrap)
 
 
-def _wrap(ends, strands: list[_Strand], terms: list, k: int, wheel_terms) -> Wrap:
-    """Return the length of a part that rubs on its end k, with the slip there."""
-    before = {id(strand.of) for strand in strands[:k]}
-    behind = {id(strand.of) for strand in strands[k:]}
+def _wrap(ends, strands: list[_Strand], terms: list, rubs: list[int], wheel_terms) -> Wrap:
+    """Return the length of a part that rubs on some of its ends, with the one slip there."""
+    first, last = rubs[0], rubs[-1]
+    before = {id(strand.of) for strand in strands[:first]}
+    behind = {id(strand.of) for strand in strands[last:]}
     slip = [0.5 * ((id(one) in behind) - (id(one) in before)) for one, _, _ in terms]
     if not ends[0].slips:
         slip[0] = -0.5 * terms[0][2]
     if not ends[-1].slips:
         slip[-1] = 0.5 * terms[-1][2]
-    turned = wheel_terms(ends[k], -1.0)
+    turned = wheel_terms(ends[first], -1.0)
     places = {id(one): n for n, (one, _, _) in enumerate(terms)}
-    around, axis = (strands[k - 1], strands[k]), strands[k].axis
-    assert axis is not None
-    way = 1 if float(ends[k].axis @ axis) > 0.0 else -1
+    around = strands[first - 1], strands[last]
+    guide, *others = (_guide(ends[k], strands[k - 1], strands[k]) for k in rubs)
     made: Any = Wrap._of([*terms, *((joint, at, 0.0) for joint, at, _ in turned)])
     keep(
-        made, slip=(*slip, *(factor for *_, factor in turned)), way=way, friction=ends[k].friction,
+        made, slip=(*slip, *(factor for *_, factor in turned)), way=guide[0], arc=guide[1],
+        friction=guide[2], others=tuple(others),
         strands=tuple(places[id(one.of)] if one.of is not None else -1 for one in around),
         angles=tuple(one.seen for one in around),
-        arc=way * ((around[1].angle or 0.0) - (around[0].angle or 0.0)),
     )  # fmt: skip
     return made
+
+
+def _guide(end: _End, before: _Strand, behind: _Strand) -> tuple[int, float, float]:
+    """Return way, arc and friction of a guide between two strands."""
+    assert behind.axis is not None
+    way = 1 if float(end.axis @ behind.axis) > 0.0 else -1
+    return way, way * ((behind.angle or 0.0) - (before.angle or 0.0)), end.friction
 
 
 def _strand(a: _End, b: _End, last: _Strand) -> _Strand:

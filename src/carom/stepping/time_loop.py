@@ -36,9 +36,21 @@ def run(model, data, method, islands, grid, until):
 
     Return 0, a code for the caller, or a `Status`.
     """
+    begin_call(data.work)
+    return take_steps(model, data, method, islands, grid, until)
+
+
+@kernel
+def begin_call(work):
+    """Begin a call from Python: what was set since the last one may have changed the accelerations."""
+    work.step[0].since = 0.0
+    forget_end(work)
+
+
+@kernel
+def take_steps(model, data, method, islands, grid, until):
+    """Continue to step number `until`; return 0, a code for the caller, or a `Status`."""
     controls, clock, step = model.controls, data.clocks[0], data.work.step[0]
-    step.since = 0.0
-    forget_end(data.work)
     while clock.step < until:
         if step.since > r.LONG:
             return r.PAUSE

@@ -13,9 +13,10 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from carom.geometry import quaternion
+from carom.model.switched import NOTHING_SWITCHED, stands_of
 from carom.scene.belts import BeltRelation, BeltStretch
 from carom.scene.bodies import Body
-from carom.scene.coordinates import Axial, Bush, Length, Strand, terms_of
+from carom.scene.coordinates import Axial, BodyTurn, Bush, Length, Strand, terms_of
 from carom.scene.curves import Curve
 from carom.scene.forces import Spring
 from carom.scene.joints import CurveOnPoint, Distance, Joint, RollingDisc, RollingSphere
@@ -66,6 +67,13 @@ class Link(NamedTuple):
         NO_RADII  #: (2,) of the circles round which a strand of rope goes, about `axis` (3,)
     )
     axis: np.ndarray = ORIGIN
+    part: str = ""  #: name of the part of the scene that it is
+    #: begins and ends of the times at which it is there [s]; None: always
+    there: tuple[tuple[float, float], ...] | None = None
+
+    def is_there(self, t: float) -> bool:
+        """Return whether it is there at a time: not since it broke, or was switched off."""
+        return self.there is None or any(begin <= t < end for begin, end in self.there)
 
     def ends(self, x: np.ndarray, Q: np.ndarray) -> list[np.ndarray]:
         """Return both ends (3,) at positions x (N, 3) and orientations Q (N, 4) of the bodies."""
@@ -311,27 +319,45 @@ def links_of(scene) -> list[Link]:
             pair = (one.parent, d.anchor_parent), (one.child, d.anchor_child)
             start, end = (_in_body(part, a) for part, a in pair)
             kind = "rod" if isinstance(d, Distance) else "spring"
-            out.append(Link(one.parent.index, one.child.index, start, end, kind))
-    out += [link for one in scene.constraints for link in _strands_of(one.definition)]
-    along = [getattr(one.definition, "joint", None) for one in scene.forces]
-    out += [
-        link for of in (*along, *(stop.joint for stop in scene.stops)) for link in _strands_of(of)
-    ]
+            out.append(Link(one.parent.index, one.child.index, start, end, kind, part=one.name))
+    of_part = [(one, one.definition) for one in scene.constraints]
+    along = [(one, getattr(one.definition, "joint", None)) for one in scene.forces]
+    of_part += [*along, *((stop, stop.joint) for stop in scene.stops)]
+    for one, of in of_part:
+        out += [link._replace(part=one.name) for link in _strands_of(of)]
     rods = {id(stop.joint) for stop in scene.stops if stop.upper is None}
-    for of in along:
+    for force, of in along:
         for one, _, _ in terms_of(of, 0):
-            out += _cord(one, "cord", 0.0)
+            out += [link._replace(part=force.name) for link in _cord(one, "cord", 0.0)]
     for stop in scene.stops:
         kind = "rod" if stop.upper is None else "cord"
         for one, _, _ in terms_of(stop.joint, stop.coordinate):
             if kind == "rod" or id(stop.joint) not in rods:
-                out += _cord(one, kind, stop.end if kind == "cord" else 0.0)
+                cords = _cord(one, kind, stop.end if kind == "cord" else 0.0)
+                out += [link._replace(part=stop.name) for link in cords]
     return out
+
+
+def links_in(solution) -> list[Link]:
+    """Return the links of the scene of a run, or of its start, with the times at which each is there."""
+    scene, run = solution.scene, getattr(solution, "_run", None)
+    switched = NOTHING_SWITCHED if run is None else run.switched
+    links, stands = links_of(scene), stands_of(scene, switched)
+    if len(stands) == 1 and not stands[0][1].off:
+        return links
+    changes = [float(solution.t[row - 1]) for row, _ in stands[1:] if row <= len(solution.t)]
+    edges = [-math.inf, *changes, math.inf]
+    off = [stand.view(scene)._off or frozenset() for _, stand in stands]
+    spans = list(zip(edges, edges[1:], off))
+    return [
+        link._replace(there=tuple((a, b) for a, b, names in spans if link.part not in names))
+        for link in links
+    ]
 
 
 def _cord(of: Any, kind: str, length: float) -> list[Link]:
     """Return a strand of a rope, or a massless rod or cord; none of any other coordinate."""
-    if not isinstance(of, Length) or isinstance(of, (Bush, Axial)):
+    if not isinstance(of, Length) or isinstance(of, (Bush, Axial, BodyTurn)):
         return []
     ends = _in_body(of.parent, of.ends[0]), _in_body(of.child, of.ends[1])
     pair = of.parent.index, of.child.index

@@ -21,6 +21,7 @@ from carom.run import Run
 from carom.status import Status
 from carom.stepping.grid import cut_grid
 from carom.watch.conditions import Condition, Observed
+from carom.watch.limits import Within
 from carom.watch.switching import changes, switch, switches_of
 
 ROUND_OFF = 4.0 * float(np.finfo(float).eps)  # of a time: no interval is halved that is shorter
@@ -60,6 +61,7 @@ class Watched:
         self.last: tuple[float, list[float]] | None = None  # time and values before the last step
         self.asked, self.at = "", 0.0  # the condition that was evaluated last, and its time
         self.timed = all(c.switch is not None and c.switch.time is not None for c in conditions)
+        self.within = Within(self, conditions)
         self.values = self.evaluated()
         self.break_at_once()
 
@@ -85,6 +87,11 @@ class Watched:
             if self.timed and (quiet := self.steps_before_switch(until)) > run.steps_done:
                 status = run.go_on(quiet)
                 continue
+            if self.within.able:
+                quiet = self.within.go_on(self.steps_before_switch(until))
+                if quiet is not None:
+                    status = quiet
+                    continue
             self.began, self.struck = run.reached, int(run.clock["struck"][0])
             self.before.take()
             status = run.go_on(run.steps_done + 1)
@@ -93,9 +100,10 @@ class Watched:
         return status
 
     def steps_before_switch(self, until: int) -> int:
-        """Return the number of the step before that in which a switch acts, where all have times."""
+        """Return the number of the step before that in which the next switch with a time acts."""
         run = self.run
-        left = [c.switch.time for c in self.conditions if c.switch.time > run.reached]
+        times = [c.switch.time for c in self.conditions if c.switch.time is not None]
+        left = [time for time in times if time > run.reached]
         last = until + self.more
         return min(last, run.step_at(min(left)) - 1) if left else last
 

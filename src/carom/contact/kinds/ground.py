@@ -103,7 +103,13 @@ def bulge(system, contact, state, work) -> float:
     x = w[0, 0] * n[0] + w[1, 0] * n[1] + w[2, 0] * n[2]
     y = w[0, 1] * n[0] + w[1, 1] * n[1] + w[2, 1] * n[2]
     z = w[0, 2] * n[0] + w[1, 2] * n[1] + w[2, 2] * n[2]
-    load_face(by_reference(Pair(a, b, hulls, s, work.pair.found)), 0, -x, -y, -z)
+    load_face(
+        by_reference(Pair(a, b, hulls, s, work.pair.found, work.pair.poses, work.pair.known)),
+        0,
+        -x,
+        -y,
+        -z,
+    )
     count, middle, most = s.count[0], (0.0, 0.0, 0.0), 0.0
     if count < 3:
         return 0.0

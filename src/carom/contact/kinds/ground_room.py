@@ -86,7 +86,9 @@ def _near_curve(system, contact, state, i, travel, work):
     solid, other = system.solids[contact.solid], system.solids[contact.other_solid]
     surface, hulls, s = system.hulls.surfaces[other.surface], system.hulls, work.pair.state[0]
     if solid.kind == ELLIPSOID:
-        return lowest_of_ellipsoid(Pair(solid, other, hulls, s, work.pair.found), surface)
+        return lowest_of_ellipsoid(
+            Pair(solid, other, hulls, s, work.pair.found, work.pair.poses, work.pair.known), surface
+        )
     u = corner(solid, hulls, i)
     p = point_of_a(s, u[0], u[1], u[2])
     if field_at(surface, hulls, p)[0] > surface["size"][3] * (travel + contact.radius):

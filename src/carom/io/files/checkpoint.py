@@ -25,7 +25,8 @@ FIXED = {
     )),
     "work.first", "work.point", "work.step", "work.search", "work.known", "work.stage", "work.trial",
     "work.part", "work.middle", "work.iterate", "work.mean", "work.beside", "work.origin", "work.struck",
-    "work.placed", "islands.clock", "islands.single.clock", "islands.joined", "islands.others",
+    "work.placed", "work.pair.poses", "work.pair.known", "islands.clock", "islands.single.clock",
+    "islands.joined", "islands.others",
     "islands.partner", "islands.partner_first", "islands.plane", "islands.plane_first",
 }  # fmt: skip
 

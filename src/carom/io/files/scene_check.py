@@ -163,10 +163,15 @@ def _check_wrap(record: Wrap) -> None:
     for one in record.strands:
         if checks.integer("each of strands", one, least=-1) >= count:
             raise ValueError(f"strands must be below {count}, got {record.strands!r}")
-    if record.way not in (-1, 1):
-        raise ValueError(f"way must be 1 or -1, got {record.way!r}")
-    checks.number("arc", record.arc, least=0.0)
-    checks.number("friction", record.friction, above=0.0)
+    if not isinstance(record.others, tuple) or not all(
+        isinstance(one, tuple) and len(one) == 3 for one in record.others
+    ):
+        raise ValueError(f"others must be way, arc and friction of each, got {record.others!r}")
+    for way, arc, friction in record.guides:
+        if way not in (-1, 1):
+            raise ValueError(f"way must be 1 or -1, got {way!r}")
+        checks.number("arc", arc, least=0.0)
+        checks.number("friction", friction, above=0.0)
 
 
 @cache

@@ -36,7 +36,7 @@ from carom.scene.belts import BeltRelation, BeltStretch
 from carom.scene.bodies import FIXED, GROUND, Body, Ground
 from carom.scene.constraints import CONSTRAINTS, Constraint, Gear
 from carom.scene.contacts import Contact
-from carom.scene.coordinates import Axial, Bush, Combination, Length, Strand, Wrap
+from carom.scene.coordinates import Axial, BodyTurn, Bush, Combination, Length, Strand, Wrap
 from carom.scene.curves import CURVES
 from carom.scene.forces import FORCES, AppliedForce
 from carom.scene.joints import JOINTS, Joint
@@ -71,6 +71,7 @@ TYPES: dict[str, type[Any]] = {
         Strand,
         Bush,
         Axial,
+        BodyTurn,
         Wrap,
         BeltStretch,
         BeltRelation,
@@ -94,6 +95,7 @@ LATER_OF: dict[str, dict[str, Any]] = {
     "JointFriction": {"mu": None, "radius": None, "length": None},
     "Material": {"young": None, "poisson": 0.3},
     "Stop": {"stiffness": None},
+    "Wrap": {"others": {"tuple": []}},
 }
 ARRAYS = ("<f8", "<i8", ">f8", ">i8", "|b1")
 

@@ -79,13 +79,14 @@ class Moving:
         points, velocity = self.x[k, self.owner] + arms, v + np.cross(w, arms)
         bodies = [self.owner[self.triangles[:, 0]]]
         cells = [("triangle", self.triangles)]
-        if self.links:
-            ends = np.reshape([link.ends(self.x[k], self.Q[k]) for link in self.links], (-1, 3))
-            sides = np.array([b for link in self.links for b in (link.parent, link.child)])
+        links = [link for link in self.links if link.is_there(self.time[k])]
+        if links:
+            ends = np.reshape([link.ends(self.x[k], self.Q[k]) for link in links], (-1, 3))
+            sides = np.array([b for link in links for b in (link.parent, link.child)])
             rate = self.v[k, sides] + np.cross(self.w[k, sides], ends - self.x[k, sides])
             lines = (len(points) + np.arange(len(ends))).reshape(-1, 2).astype(np.int32)
             cells.append(("line", lines))
-            bodies.append(np.array([link.child for link in self.links]))
+            bodies.append(np.array([link.child for link in links]))
             points = np.concatenate([points, ends])
             velocity = np.concatenate([velocity, np.where(sides[:, None] < 0, 0.0, rate)])
         motion = {

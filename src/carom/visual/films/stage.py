@@ -13,7 +13,7 @@ from carom.scene.shapes.revolved import Cylinder
 from carom.visual.bodies import (
     Part,
     ground_points,
-    links_of,
+    links_in,
     moving,
     outline_of,
     static_part,
@@ -108,7 +108,7 @@ class Stage:
     def _place_models(self) -> None:
         scene = self.solution.scene
         self.all, self.owner = models(scene, self.length, self.camera.centre)
-        self.links = links_of(scene)
+        self.links = links_in(self.solution)
         rod = model_of(Part(*surface(Cylinder(1.0, 1.0), 12), [], "joint"))
         self.rod = rod._replace(colours=rod.colours + LINK)
 
@@ -146,7 +146,7 @@ class Stage:
         x, Q, _, _ = self.solution._curve(t)
         if self.followed is not None:
             camera = camera._replace(centre=x[self.followed[0].index])
-        world, buffer = self._world(x, Q), self._empty(camera)
+        world, buffer = self._world(x, Q, t), self._empty(camera)
         for number, (plane, *_) in enumerate(self.planes, 1):
             falls = self.light @ plane[1]
             if falls > 0.1:
@@ -179,13 +179,13 @@ class Stage:
                 ground(eye, sight, grid, colours, number, self._kept)
         return Buffer(*(one.copy() for one in self._kept))
 
-    def _world(self, x, Q) -> Model:
+    def _world(self, x, Q, t: float) -> Model:
         """Return all triangles at their present positions."""
         x, Q = np.vstack([x, np.zeros(3)]), np.vstack([Q, [1.0, 0.0, 0.0, 0.0]])  # the last: static
         turn = quaternion.matrix(Q)[self.owner]
         corners = np.einsum("fij,fkj->fki", turn, self.all.corners) + x[self.owner][:, None]
         normals = np.einsum("fij,fkj->fki", turn, self.all.normals)
-        lines = [link.line(x, Q, self.up) for link in self.links]
+        lines = [link.line(x, Q, self.up) for link in self.links if link.is_there(t)]
         links = [self._link(*pair) for line in lines for pair in itertools.pairwise(line)]
         return joined([self.all._replace(corners=corners, normals=normals), *links])
 

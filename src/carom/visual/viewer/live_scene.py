@@ -51,7 +51,10 @@ class LiveScene:
         self.links = None
         if show.links:
             self.links = stage.add_line_segments(
-                "/links", _ends(show.links, x, Q), (91, 104, 115), thickness=0.012 * self.radius
+                "/links",
+                _ends(show, show.frames.time[0]),
+                (91, 104, 115),
+                thickness=0.012 * self.radius,
             )
         points = show.solution.impacts.point[show.strikes.number]
         self.marks = stage.add_icosphere("/none", 1e-9) if not len(points) else self._marks(points)
@@ -67,7 +70,7 @@ class LiveScene:
             handle.batched_positions = x[part.bodies].astype(np.float32)
             handle.batched_wxyzs = Q[part.bodies].astype(np.float32)
         if self.links is not None:
-            self.links.points = _ends(self.show.links, x, Q)
+            self.links.points = _ends(self.show, t)
         number, time = self.show.strikes.number, self.show.solution.impacts.time
         age = t - time[number]
         seen = (age >= 0.0) & (age < fading)
@@ -170,6 +173,10 @@ def _rgb(colour: str) -> tuple[int, int, int]:
     return red, green, blue
 
 
-def _ends(links, x: np.ndarray, Q: np.ndarray) -> np.ndarray:
-    """Return both ends (L, 2, 3) of springs and rods."""
-    return np.array([link.ends(x, Q) for link in links], dtype=np.float32)
+def _ends(show: Show, t: float) -> np.ndarray:
+    """Return both ends (L, 2, 3) of springs and rods; they are one point of what is not there at a time."""
+    x, Q = poses_at(show.frames, t)
+    ends = np.array([link.ends(x, Q) for link in show.links], dtype=np.float32)
+    gone = [not link.is_there(t) for link in show.links]
+    ends[gone, 1] = ends[gone, 0]
+    return ends

@@ -117,7 +117,7 @@ def header(show: Show, packer: Packer) -> dict:
             }
             for p in show.planes
         ],
-        "links": [_link(link, place.centre) for link in show.links],
+        "links": [_link(link, place.centre, frames.time) for link in show.links],
         "energy": _energy(solution, packer),
         "impacts": _impacts(show, packer),
         "persistent": {
@@ -129,12 +129,17 @@ def header(show: Show, packer: Packer) -> dict:
     }  # fmt: skip
 
 
-def _link(link, centre: np.ndarray) -> dict:
-    """Return a spring, rod or cord; points of the ground from the centre, as all points of the world."""
+def _link(link, centre: np.ndarray, time: np.ndarray) -> dict:
+    """Return a spring, rod or cord; points of the ground from the centre, as all points of the world.
+
+    Times at which it is there are cut off beyond those that are shown, which JSON could not state.
+    """
+    spans = None if link.there is None else np.clip(link.there, time[0] - 1.0, time[-1] + 1.0)
     ends = (link.parent, link.parent_anchor), (link.child, link.child_anchor)
     anchors = [(anchor if body >= 0 else anchor - centre).tolist() for body, anchor in ends]
     sides = [link.parent, link.child]
     made = {"bodies": sides, "anchors": anchors, "kind": link.kind, "length": link.length}
+    made["there"] = None if spans is None else spans.tolist()
     return made | {"radii": link.radii.tolist(), "axis": link.axis.tolist()}
 
 

@@ -75,7 +75,7 @@ def show_of(
         title, solution, moments, place, sizes,
         bodies.parts_of(scene, place.radius, centre=place.centre),
         planes.planes_of(scene, place, moments.position),
-        bodies.links_of(scene),
+        bodies.links_in(solution),
         strikes.strikes_of(solution),
         strikes.persistent_forces(solution, moments.time),
     )  # fmt: skip

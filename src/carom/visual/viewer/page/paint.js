@@ -50,7 +50,7 @@ class Painter {
     return look === "joint" ? "#5b6873" : look === "pip" ? pips[b] : bodies[b];
   }
 
-  solids(poses) {
+  solids(poses, t) {
     const out = [];
     for (const { mesh, bodies, look, colour: own } of this.parts)
       for (const b of bodies) {
@@ -59,7 +59,8 @@ class Painter {
         out.push({ mesh, colour, model: frame(...axesOf(Q), x), pattern: look === "round" });
       }
     const thick = 0.02 * this.run.place.radius;
-    for (const { bodies, anchors, kind, length, radii, axis } of this.run.links) {
+    for (const { bodies, anchors, kind, length, radii, axis, there } of this.run.links) {
+      if (there && !there.some(([begin, end]) => begin <= t && t < end)) continue;
       const ends = anchors.map((a, k) => (bodies[k] < 0 ? a : carried(poses[bodies[k]], a)));
       const [from, to] = radii[0] || radii[1] ? this.strand(ends, radii, axis) : ends;
       const wide = kind === "spring" ? thick : 0.35 * thick;
@@ -162,7 +163,7 @@ class Painter {
     const sun = product(parallel(size, -far / 2, 1.5 * far), along);
     this.canvas.draw({
       view, sun, eye: camera.eye, light: this.light, up,
-      solids: this.solids(poses), planes: this.planes,
+      solids: this.solids(poses, state.time), planes: this.planes,
       lines: state.paths ? this.lines(state.time, state.follow) : [],
       marks: state.arrows ? this.marks(state.time) : [],
       arrows: state.arrows ? this.arrows(state.time, state.fading, state.length) : [],
