@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.friction.layout import ContactProblem, ContactWork, new_contact_work
+from carom.friction.graph import Graph, new_graph
+from carom.friction.layout import ContactProblem, ContactWork, new_contact_work, with_bodies
 from carom.impact.multiple.layout import (
     CORNER_CONTACT,
     MultipleResult,
@@ -23,6 +24,8 @@ from carom.model.workspace import POINT
 
 #: greatest number of points that are solved together
 MOST_TOGETHER = 192
+#: least number of points of a group that may be solved by its bodies
+LEAST_POINTS = 24
 
 #: a closed point: its contact, and its place in the list of active points
 CLOSED_POINT = [
@@ -54,13 +57,24 @@ CLOSED_POINT = [
 ]
 
 
-#: what a force along a row does to its two bodies (`carom.persistent.by_bodies`)
+#: what a force along a row does to its two bodies, and its equation (`carom.persistent.by_bodies`): `rate` times
+#: the rates of its row and of the other of its disc, + `own` times their forces, + `bound` times that of its
+#: leader. With a factor the force is `inverse` times what is asked, + `follow` times that of its leader, - `lead`
 ARM = [
     ("body", "i8", 2),  # their places in the group, -1 for none
+    ("other", "i8"),  # the other row of its disc, or its own
+    ("leader", "i8"),  # the row of the normal force that bounds it, or its own
     ("row", "f8", (2, 6)),
     ("motion", "f8", (2, 6)),  # by a unit force
-    ("push", "f8", (2, 6)),  # of an unknown: by a unit force with its friction
-    ("stiffness", "f8"),  # of an unknown: 1/(eps S)
+    ("push", "f8", (2, 6)),  # of an unknown: by a unit force with what follows it
+    ("lead", "f8", (2, 6)),
+    ("rate", "f8", 2),
+    ("own", "f8", 2),
+    ("bound", "f8"),
+    ("inverse", "f8", 2),
+    ("follow", "f8"),
+    ("force", "f8"),  # of a product or a solution
+    ("gives", "f8"),  # its rate in a product, or what is asked of it
 ]
 
 
@@ -78,9 +92,9 @@ class Equations(NamedTuple):
     directions: np.ndarray  # (3K, 3K) corrections z of x, each before A z (`persistent.settle`)
     part: np.ndarray  # (3K,) the part of the correction by r in each of them
     arms: np.recarray  # (3K,) ARM
-    motion: np.ndarray  # (6N,) of the bodies
-    #: (2,) number of bodies with arms, 0 if W alone is known; the same of `factor`
-    bodies: np.ndarray
+    tree: ContactWork  # factors of the motion of bodies: its links, bodies and blocks
+    graph: Graph  # of these bodies
+    bodies: np.ndarray  # (1,) their number, if equations are solved by bodies; 0 if W is known
     #: (2,) those of stages that fail in a closing step, and for impulses instead; work of factors (`springs`)
     iterations: np.ndarray
 
@@ -103,6 +117,7 @@ class Group(NamedTuple):
     closed: np.recarray  # (K,) CLOSED_POINT
     count: np.ndarray  # (1,) those that `contact.closed_points` has listed
     points: np.recarray  # (2, K) POINT: of the present state; of the end of a step
+    own: np.ndarray  # (3K, 3) the part of W in each row that is of its own point
     u: np.ndarray  # (3K,) velocities [m/s]
     p: np.ndarray  # (3K,) impulses [N s] or forces [N]
     a: np.ndarray  # (3K,) accelerations with them [m/s^2]
@@ -162,22 +177,38 @@ def new_group(system: System, more: bool = False) -> Group:
     )  # fmt: skip
     return Group(
         closed=table(CLOSED_POINT, k), count=np.zeros(1, dtype=np.int64), points=table(POINT, 2, k),
-        u=u, p=p, a=a, back=back, idle=np.zeros((2, k, k)), loads=loads,
+        own=np.zeros((3 * k, 3)), u=u, p=p, a=a, back=back, idle=np.zeros((2, k, k)), loads=loads,
         vectors=np.zeros(9), secant=secant, bodies=bodies,
-        equations=new_equations(3 * k, n), problem=problem, cone=new_contact_work(k),
+        equations=new_equations(k, n), problem=problem, cone=new_contact_work(k),
     )  # fmt: skip
 
 
-def new_equations(n: int, bodies: int) -> Equations:
-    """Return a system of up to n unknowns of some bodies; its three matrices take .8 MB for 60 points."""
+def new_equations(points: int, bodies: int) -> Equations:
+    """Return a system for points of some bodies; its three matrices take .8 MB for 60 points."""
+    n, large = 3 * points, points >= LEAST_POINTS
     rows, chosen, pivot = (np.zeros(n, dtype=np.int64) for _ in range(3))
     A, factor, directions = (np.zeros((n, n)) for _ in range(3))
     x, r, before, part = (np.zeros(n) for _ in range(4))
+    tree, graph = new_tree(points if large else 0, bodies if large else 0)
     return Equations(
         rows=rows, chosen=chosen, A=A, factor=factor, pivot=pivot, x=x, r=r, before=before,
-        directions=directions, part=part, arms=table(ARM, n), motion=np.zeros(6 * bodies),
-        bodies=np.zeros(2, dtype=np.int64), iterations=np.zeros(2, dtype=np.int64),
+        directions=directions, part=part, arms=table(ARM, n), tree=tree, graph=graph,
+        bodies=np.zeros(1, dtype=np.int64), iterations=np.zeros(2, dtype=np.int64),
     )  # fmt: skip
+
+
+def new_tree(points: int, bodies: int) -> tuple[ContactWork, Graph]:
+    """Return the blocks of bodies and their graph; without room for them a group has full matrices."""
+    if points == 0:
+        return no_tree()
+    room = 4 * points, 128 * points
+    return with_bodies(no_tree()[0], points, bodies, room), new_graph(bodies, points, 0)
+
+
+@cache
+def no_tree() -> tuple[ContactWork, Graph]:
+    """Return the same for a group of a few points: nothing is written to it."""
+    return with_bodies(new_contact_work(1), 0, 0, (0, 0)), new_graph(0, 0, 0)
 
 
 @cache

@@ -35,7 +35,7 @@ from carom.persistent.bounces import (
     time_without_torque,
     velocity_after,
 )
-from carom.persistent.by_bodies import forget_arms
+from carom.persistent.by_bodies import FACTORED, forget_arms
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.finish import add_forces_of_corners
 from carom.persistent.jam import jams_among, note_jam
@@ -46,7 +46,7 @@ from carom.persistent.points import weigh
 from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.rows import slip_of, write_motion
 from carom.persistent.slip_law import set_friction
-from carom.persistent.springs import FACTORED, count_factors
+from carom.persistent.springs import count_factors, note_own
 from carom.persistent.start import accelerate_start, first_stage
 from carom.persistent.thresholds import LEAVING_PART
 from carom.status import TOO_MANY_POINTS
@@ -84,6 +84,7 @@ def activate_group(model, data, k, label, horizon):
     rows = add_frictions(system, label, state, k, group, work)
     inverse_masses(system, rows, group.points[0], state, work, group.problem.W)
     forget_arms(group)
+    note_own(rows, group)
     if has_loads(group):
         note_responses(system, rows, state, work, group)
     weigh(system, rows, group)
@@ -157,9 +158,7 @@ def decide_active(model, data, k, rows, horizon):
                 if bounces_end(system, contact, u, -a, slow(contact, state), end):
                     group.closed[i].stays, more = 1, True
                     group.closed[i].bounces = time_without_torque(system, contact, u, -a, state)
-            elif turn == 0 and a > max(
-                LEAVING_PART * push, group.p[3 * i] * group.problem.W[3 * i, 3 * i]
-            ):
+            elif turn == 0 and a > max(LEAVING_PART * push, group.p[3 * i] * group.own[3 * i, 0]):
                 group.closed[i].stays = 0  # it has no force
         if not more:
             break

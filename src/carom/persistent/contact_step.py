@@ -26,6 +26,7 @@ from carom.model.actions import (
     EVENT_STOP,
     MODE_OPEN,
 )
+from carom.persistent.by_bodies import FACTORED
 from carom.persistent.finish import (
     SLIP_CHANGES,
     SLIP_STAYS,
@@ -38,7 +39,7 @@ from carom.persistent.finish import (
 from carom.persistent.members import explicit_member, implicit_member
 from carom.persistent.return_to_surfaces import note_undetermined
 from carom.persistent.rows import beyond_stop, bodies_of
-from carom.persistent.springs import FACTORED, count_factors
+from carom.persistent.springs import count_factors
 from carom.persistent.start import first_modes, first_stage
 from carom.persistent.step_control import first_acceleration, lost_in_stop, note_unnamed
 from carom.persistent.stops import concerned, is_sought, note_left
