@@ -74,6 +74,7 @@ ARM = [
     ("inverse", "f8", 2),
     ("follow", "f8"),
     ("force", "f8"),  # of a product or a solution
+    ("alone", "f8"),  # that force without what follows its leader
     ("gives", "f8"),  # its rate in a product, or what is asked of it
 ]
 

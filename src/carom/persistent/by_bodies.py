@@ -148,12 +148,19 @@ def factor_by_bodies(n, rows, equations):
     count, arms = equations.bodies[0], equations.arms
     tree = by_reference(of_present_size(count, equations.graph, equations.tree))
     begin_blocks(tree)
-    for i in range(n):
-        arm, link = arms[rows[i]], tree.link[rows[i] // 3]
+    i = 0
+    while i < n:
+        row, whole = rows[i], is_whole(i, n, rows)
+        corner = tree.link[row // 3].corner
         for side in range(4):
             a, b = side // 2, side % 2
-            if arm.body[a] >= 0 and arm.body[b] >= 0:
-                add_product(tree.block[link.corner[a, b]], arm.push[a], arm.lead[b])
+            if corner[a, b] < 0:
+                continue
+            if whole:
+                add_products(tree.block[corner[a, b]], arms, row, a, b)
+            else:
+                add_product(tree.block[corner[a, b]], arms[row].push[a], arms[row].lead[b])
+        i += 3 if whole else 1
     factor_blocks(tree)
     count_products(144 * n + 216 * (tree.target.shape[0] + tree.block.shape[0]), equations)
 
@@ -162,6 +169,23 @@ def factor_by_bodies(n, rows, equations):
 def count_products(count, equations):
     """Add products to the work of factors."""
     equations.iterations[FACTORED] += count // PASS
+
+
+@kernel
+def is_whole(i, n, rows):
+    """Return whether all three rows of an entry are given from place i on: they are used together."""
+    row = rows[i]
+    return i + 2 < n and row % 3 == 0 and rows[i + 1] == row + 1 and rows[i + 2] == row + 2
+
+
+@kernel
+def add_products(block, arms, row, a, b):
+    """Add the products of pushes of body a and leads of body b of three rows to their block."""
+    p, q, r = arms[row].push[a], arms[row + 1].push[a], arms[row + 2].push[a]
+    x, y, z = arms[row].lead[b], arms[row + 1].lead[b], arms[row + 2].lead[b]
+    for i in range(6):
+        for j in range(6):
+            block[i, j] += p[i] * x[j] + q[i] * y[j] + r[i] * z[j]
 
 
 @kernel
@@ -219,18 +243,49 @@ def push_by_unknowns(n, rows, equations, part, x):
         arms[rows[i]].force = x[i]
     for i in range(n):
         arm = arms[rows[i]]
-        alone = x[i] - arm.follow * arms[arm.leader].force
-        move_bodies(arm, arm.push, part * alone, equations.tree.body)
+        arm.alone = part * (x[i] - arm.follow * arms[arm.leader].force)
+    push_alone(n, rows, equations)
+
+
+@kernel
+def push_alone(n, rows, equations):
+    """Add the pushes of what the forces in n rows are beside those that follow others."""
+    arms, body, i = equations.arms, equations.tree.body, 0
+    while i < n:
+        first, whole = arms[rows[i]], is_whole(i, n, rows)
+        if whole:
+            second, third = arms[rows[i] + 1], arms[rows[i] + 2]
+            x, y, z = first.alone, second.alone, third.alone
+            for side in range(2):
+                if first.body[side] >= 0:
+                    motion = body[first.body[side]].motion
+                    p, q, r = first.push[side], second.push[side], third.push[side]
+                    for j in range(6):
+                        motion[j] += x * p[j] + y * q[j] + z * r[j]
+        else:
+            move_bodies(first, first.push, first.alone, body)
+        i += 3 if whole else 1
 
 
 @kernel
 def push_by_forces(k, equations, p):
     """Write the motion of the bodies by the forces p in all rows of k points."""
+    arms, body = equations.arms, equations.tree.body
     rest_bodies(equations)
-    for row in range(3 * k):
-        if p[row] != 0.0:
-            arm = equations.arms[row]
-            move_bodies(arm, arm.motion, p[row], equations.tree.body)
+    for row in range(0, 3 * k, 3):
+        x, y, z = p[row], p[row + 1], p[row + 2]
+        if x == 0.0 and y == 0.0 and z == 0.0:
+            continue
+        for side in range(2):
+            if arms[row].body[side] >= 0:
+                motion = body[arms[row].body[side]].motion
+                a, b, c = (
+                    arms[row].motion[side],
+                    arms[row + 1].motion[side],
+                    arms[row + 2].motion[side],
+                )
+                for j in range(6):
+                    motion[j] += x * a[j] + y * b[j] + z * c[j]
 
 
 @kernel
@@ -260,9 +315,9 @@ def solve_by_bodies(n, rows, equations, x):
         arms[rows[i]].gives = x[i]
     for i in range(n):
         arm = arms[rows[i]]
-        alone = arm.inverse[0] * x[i] + arm.inverse[1] * arms[arm.other].gives
-        move_bodies(arm, arm.push, alone, body)
-        arm.force = alone + arm.follow * arms[arm.leader].force
+        arm.alone = arm.inverse[0] * x[i] + arm.inverse[1] * arms[arm.other].gives
+        arm.force = arm.alone + arm.follow * arms[arm.leader].force
+    push_alone(n, rows, equations)
     tree = by_reference(of_present_size(equations.bodies[0], equations.graph, equations.tree))
     substitute_blocks(tree)
     count_products(24 * n + 36 * tree.block.shape[0], equations)
