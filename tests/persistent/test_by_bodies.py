@@ -45,7 +45,7 @@ def write_arms(n, rows, slides, softness, equations):
 
 
 def random_group(bodies, points, rng):
-    """Return equations of points between bodies of a ring, or on the ground; their rows R, motions Y and eps S."""
+    """Return equations of points between bodies of a ring, or on the ground; and R, Y and eps S."""
     n = 3 * points
     equations = new_equations(points, bodies)
     R, Y, S = np.zeros((n, 6 * bodies)), np.zeros((6 * bodies, n)), np.zeros(n)

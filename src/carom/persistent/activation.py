@@ -28,14 +28,14 @@ from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.active_set import activate, regroup, set_anchor, switch, unite_loaded
 from carom.persistent.adhesion import write_pulls
 from carom.persistent.bounces import (
+    after_pull,
     bounces_end,
     end_bounces,
     find_pull,
     horizon_of,
     time_without_torque,
-    velocity_after,
 )
-from carom.persistent.by_bodies import FACTORED, forget_arms
+from carom.persistent.by_bodies import FACTORED, knows_arms, may_know_arms, note_arms
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.finish import add_forces_of_corners
 from carom.persistent.jam import jams_among, note_jam
@@ -65,7 +65,7 @@ def activate_contact(model, data, c, horizon):
         active_point = active.points[i]
         if work.body[active_point.body].label == label:
             active_point.rest = 0  # together with the new one
-    if k < 0:
+    if k < 0 or (k > data.group.idle.shape[1] and not may_know_arms(system, k, data.group)):
         hit.code = TOO_MANY_POINTS
     elif k > 0:
         data.group.equations.iterations[FACTORED] = 0
@@ -82,9 +82,10 @@ def activate_group(model, data, k, label, horizon):
     clock, records = data.clocks[0], data.records
     work.moment[0].time = clock.now
     rows = add_frictions(system, label, state, k, group, work)
-    inverse_masses(system, rows, group.points[0], state, work, group.problem.W)
-    forget_arms(group)
-    note_own(rows, group)
+    note_arms(system, data, members(work, label, group.bodies.member), rows, state)
+    if not knows_arms(group.equations):
+        inverse_masses(system, rows, group.points[0], state, work, group.problem.W)
+        note_own(rows, group)
     if has_loads(group):
         note_responses(system, rows, state, work, group)
     weigh(system, rows, group)
@@ -190,7 +191,7 @@ def stay_with_others(system, state, k, group):
     find_pull(k, 0, 0.0, group)
     for i in range(k):
         contact, u = system.contacts[group.closed[i].contact], group.u[3 * i]
-        left = velocity_after(3 * i, k, group)
+        left = after_pull(3 * i, k, group)
         if u > 0.0 and abs(left) <= max(slow(contact, state), REMAINDER * u):
             group.closed[i].stays = 1
     return True
@@ -220,7 +221,7 @@ def leave_unreachable(system, state, k, group):
         written = True
         for i in range(k):
             if group.closed[i].stays == 1:
-                left = max(left, abs(velocity_after(3 * i, k, group)))
+                left = max(left, abs(after_pull(3 * i, k, group)))
         if not left > VELOCITY_LEFT * most:
             return written
         group.closed[fastest].stays = 0

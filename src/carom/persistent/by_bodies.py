@@ -7,9 +7,9 @@ have the form
     (J + D R Y) x = r,    y = Y x:    (1 + Y J^-1 D R) y = Y J^-1 r,    x = J^-1 (r - D R y),
 
 for which no matrix of the rows is formed, W neither. J and D have blocks for an entry; the friction of a disc
-follows the normal force that bounds it. A brick of a wall has sixteen points, 48 rows. The matrix of the motions
-has blocks for bodies that touch, and is factored on their graph, so that walls and rows have a price in
-proportion to their bodies. It is for bodies without joints: a force moves no others.
+follows the normal force that bounds it. A brick of a wall has sixteen points, 48 rows. The matrix of the
+motions has blocks for bodies that touch, and is factored on their graph, so that walls and rows have a price
+in proportion to their bodies. It is for bodies without joints: a force moves no others.
 """
 
 from __future__ import annotations
@@ -32,17 +32,9 @@ PASS = 9  # entries of a matrix: to write or to multiply so many takes the time 
 def note_arms(system, data, count, k, state):
     """Write the arms of all rows of k points of a group of `count` bodies, if it may be solved by bodies."""
     group, work = data.group, data.work
-    forget_arms(group)
-    if k < LEAST_POINTS:
+    group.equations.bodies[0] = 0  # W is known, until arms are
+    if not may_know_arms(system, k, group):
         return
-    for i in range(k):
-        point, parent = group.points[0][i], group.closed[i].parent
-        if point.motion > MOTION_PIVOT or not alone(system, point):
-            return
-        if point.motion != MOTION_POINT:
-            bound = group.points[0][parent]
-            if bound.a != point.a or bound.b != point.b:
-                return
     for m in range(count):
         group.bodies.place[group.bodies.member[m]] = m
     write_arms(system, k, state, work, group)
@@ -52,9 +44,17 @@ def note_arms(system, data, count, k, state):
 
 
 @kernel
-def forget_arms(group):
-    """Note that W is known of a group, and not the arms of its rows."""
-    group.equations.bodies[0] = 0
+def may_know_arms(system, k, group):
+    """Return whether k points are many, and none is of joined bodies."""
+    for i in range(k):
+        point, parent = group.points[0][i], group.closed[i].parent
+        if point.motion > MOTION_PIVOT or not alone(system, point):
+            return False
+        if point.motion != MOTION_POINT:
+            bound = group.points[0][parent]
+            if bound.a != point.a or bound.b != point.b:
+                return False
+    return k >= LEAST_POINTS
 
 
 @unit

@@ -43,6 +43,7 @@ def _add_frictions(system, state, k, group, work) -> int:
     relations = system.relations
     for i in range(relations.frictions.shape[0]):
         if k == group.closed.shape[0]:
+            group.count[1] += 1
             break
         closed_point, point = group.closed[k], group.points[0][k]
         write_closed(-1, 0, point.core, CONSTANT, closed_point)

@@ -175,7 +175,7 @@ def implicit_stage(model, data, label, s, hg, closes):
             group.closed[i].passes = 0
         known = k == before, rough
         if (closes and lost >= budget(k)) or not solve_beyond(model, data, k, known, hg, closes):
-            if not closes:
+            if not closes or k > group.idle.shape[1]:  # impulses have full matrices
                 return -1, 0.0, 0.0
             solve_impulses(model, data, k, hg)
             struck = True

@@ -30,7 +30,14 @@ from carom.model.workspace import CONSTANT, MOTION_POINT
 from carom.persistent.by_bodies import factor_by_bodies, knows_arms, rate_of_row, set_alone
 from carom.persistent.joint_rows import is_driven
 from carom.persistent.settle import add_product, greatest, settle
-from carom.persistent.springs import last_torque, list_given, own, place_forces, response
+from carom.persistent.springs import (
+    last_torque,
+    list_given,
+    own,
+    place_forces,
+    response,
+    write_push,
+)
 from carom.persistent.thresholds import EQUATION_ERROR, PROXIMAL_SPRING
 
 
@@ -71,9 +78,13 @@ def factor_given(k, rubs, group):
     n, equations, W = list_given(k, group), group.equations, group.problem.W
     last = last_torque(k, group)
     rows, A, L = equations.rows, equations.A, equations.factor
-    if knows_arms(equations):  # without friction: with it W is known
+    if knows_arms(equations):
         for i in range(n):
-            set_alone(equations, rows[i], PROXIMAL_SPRING * own(group, rows[i]))
+            compliance = PROXIMAL_SPRING * own(group, rows[i])
+            if rubs:
+                write_push(last, rows[i], compliance, group)
+            else:
+                set_alone(equations, rows[i], compliance)
         factor_by_bodies(n, rows, equations)
         return n
     for i in range(n):

@@ -84,6 +84,8 @@ def write_rows(model, data, label, s) -> int:
     k = find_points(system, data, label)
     note_arms(system, data, members(work, label, group.bodies.member), k, state)
     if not knows_arms(group.equations):
+        if k > group.idle.shape[1]:  # no room for matrices: the step ends with TOO_MANY_POINTS
+            group.count[1], k = k - group.idle.shape[1], group.idle.shape[1]
         inverse_masses(system, k, points, state, work, group.problem.W)
         note_own(k, group)
     if has_loads(group):

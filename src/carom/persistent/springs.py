@@ -144,7 +144,7 @@ def factor_rows(k, group):
     rows, A = equations.rows, equations.A
     if knows_arms(equations):
         for i in range(n):
-            write_push(last, rows[i], group)
+            write_push(last, rows[i], softness_of(group, rows[i]), group)
         factor_by_bodies(n, rows, equations)
         return n
     for i in range(n):
@@ -300,10 +300,10 @@ def response(last, group, a, row):
 
 
 @kernel
-def write_push(last, row, group):
-    """Write the motion by a unit force along a given row, with its friction, and the compliance of the row."""
+def write_push(last, row, compliance, group):
+    """Write the motion by a unit force along a given row, with its friction, and its compliance."""
     arm, i = group.equations.arms[row], row // 3
-    set_alone(group.equations, row, softness_of(group, row))
+    set_alone(group.equations, row, compliance)
     if row % 3 == 0 and group.problem.kind[i] == SLIDING:
         add_friction(arm, i, group)
     for j in range(i + 1, last if row % 3 == 0 else i):
