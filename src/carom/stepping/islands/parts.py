@@ -19,7 +19,7 @@ from carom.stepping.islands.plan import READY, number, root, seek
 
 # of steps of given length: least number of active points of a crowd, and least average number per body
 MANY, EACH = 24, 2
-PRICE_OF_POINT = 100.0  # work of a factor by bodies for each point
+PRICE_OF_POINT = 100  # work of a factor by bodies for each point
 FACTORS = 20  # factors of W, at least, of a step of a group from event to event
 
 
