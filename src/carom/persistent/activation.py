@@ -35,7 +35,7 @@ from carom.persistent.bounces import (
     horizon_of,
     time_without_torque,
 )
-from carom.persistent.by_bodies import FACTORED, knows_arms, may_know_arms, note_arms
+from carom.persistent.by_bodies import FACTORED, knows_arms, note_arms
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.finish import add_forces_of_corners
 from carom.persistent.jam import jams_among, note_jam
@@ -65,18 +65,22 @@ def activate_contact(model, data, c, horizon):
         active_point = active.points[i]
         if work.body[active_point.body].label == label:
             active_point.rest = 0  # together with the new one
-    if k < 0 or (k > data.group.idle.shape[1] and not may_know_arms(system, k, data.group)):
+    if k < 0:
         hit.code = TOO_MANY_POINTS
     elif k > 0:
         data.group.equations.iterations[FACTORED] = 0
-        activate_group(model, data, k, label, horizon)
+        if not activate_group(model, data, k, label, horizon):
+            hit.code = TOO_MANY_POINTS
         count_factors(data.group, work.step[0])
     regroup(system, active, work)
 
 
 @kernel
 def activate_group(model, data, k, label, horizon):
-    """Judge all k closed points of a group; activate the new ones, deactivate those that open."""
+    """Judge all k closed points of a group; activate the new ones, deactivate those that open.
+
+    Return whether there is room for their equations: matrices have less than bodies.
+    """
     system = model.system
     active, state, group, work = data.active, data.state, data.group, data.work
     clock, records = data.clocks[0], data.records
@@ -84,6 +88,8 @@ def activate_group(model, data, k, label, horizon):
     rows = add_frictions(system, label, state, k, group, work)
     note_arms(system, data, members(work, label, group.bodies.member), rows, state)
     if not knows_arms(group.equations):
+        if rows > group.idle.shape[1]:
+            return False
         inverse_masses(system, rows, group.points[0], state, work, group.problem.W)
         note_own(rows, group)
     if has_loads(group):
@@ -116,6 +122,7 @@ def activate_group(model, data, k, label, horizon):
     mark_approaching(system, active, k, state, group)
     if stay:
         first_forces(model, data, label, first)
+    return True
 
 
 @kernel
