@@ -276,7 +276,8 @@ class Run:
     def grow(self, what: int) -> None:
         """Lengthen arrays that are full; `what` is their number."""
         if what == r.FULL_EVENTS:
-            self.records = r.longer(self.records, self.clock)
+            more = len(self.group.closed) - self.group.idle.shape[1]
+            self.records = r.longer(self.records, self.clock, more)
         elif what == r.FULL_PAIRS:
             self.islands = roomier(self.islands)
         elif what == r.FULL_MULTIPLE:
@@ -284,7 +285,7 @@ class Run:
                 ROOM_AT_FIRST, 2 * len(self.multiple.contact), 2 * int(self.work.hit["closed"][0])
             )
             self.multiple = new_multiple(
-                min(len(self.group.problem.mu), points), self.multiple.settings
+                min(self.group.idle.shape[1], points), self.multiple.settings
             )
         elif what == r.NEW_PAIRS:
             noted = self.islands.pair[0, : self.islands.plan[0].noted]

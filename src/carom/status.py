@@ -95,7 +95,8 @@ _MESSAGES: dict[Status, tuple[str, str]] = {
         "The solution has all results up to then.",
     ),
     Status.TOO_MANY_POINTS: (
-        "A group of bodies has more than 192 closed contact points at once.",
+        "A group of bodies has more closed contact points at once than there is room for: 192 with joints or "
+        "in an impact.",
         "Give the shapes fewer vertices.",
     ),
     Status.SINGULAR_METRIC: (

@@ -58,6 +58,8 @@ def gather_closed(model, data, c, strikes):
             if group.count[0] > before and contact.other >= 0:
                 unite(work, contact.body, contact.other)
                 more = True
+    if strikes and group.count[0] > group.idle.shape[1]:  # impacts have full matrices
+        return -1
     note_active(system, active, group.count[0], state, group)
     return group.count[0]
 

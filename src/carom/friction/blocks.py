@@ -3,8 +3,19 @@
 from __future__ import annotations
 
 from carom._compiled.decorators import kernel
-from carom.friction.lu import factor, substitute
+from carom.friction.six import factor, substitute
 from carom.friction.thresholds import LEAST_PIVOT
+
+
+@kernel
+def begin_blocks(work):
+    """Write the unit matrix."""
+    for b in range(work.block.shape[0]):
+        one = 1.0 if b < work.body.shape[0] else 0.0
+        A = work.block[b]
+        for i in range(6):
+            for j in range(6):
+                A[i, j] = one if i == j else 0.0
 
 
 @kernel
@@ -16,7 +27,7 @@ def factor_blocks(work):
     for n in range(work.place.shape[0]):
         place = work.place[n]
         diagonal, pivot = block[place.body], work.body[place.body].pivot
-        factor(diagonal, 6, pivot, LEAST_PIVOT)
+        factor(diagonal, pivot, LEAST_PIVOT)
         for s in range(place.pair, place.pairs_end):
             _divide(block[below + s], diagonal, pivot)
         for t in range(place.update, place.updates_end):
@@ -41,7 +52,7 @@ def substitute_blocks(work):
         body = work.body[place.body]
         for s in range(place.pair, place.pairs_end):
             _subtract_image(body.motion, block[right + s], work.body[later[s]].motion)
-        substitute(block[place.body], 6, body.pivot, body.motion)
+        substitute(block[place.body], body.pivot, body.motion)
 
 
 @kernel

@@ -15,7 +15,7 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
 from carom.friction import layout as o
-from carom.friction.blocks import factor_blocks, substitute_blocks
+from carom.friction.blocks import begin_blocks, factor_blocks, substitute_blocks
 from carom.friction.cone import slope
 from carom.friction.local import solve_prepared
 
@@ -197,12 +197,7 @@ def solve_shifted(work, k):
 @kernel
 def _assemble(work, k):
     """Write the blocks of I + P G^T K G."""
-    for b in range(work.block.shape[0]):
-        one = 1.0 if b < work.body.shape[0] else 0.0
-        A = work.block[b]
-        for i in range(6):
-            for j in range(6):
-                A[i, j] = one if i == j else 0.0
+    begin_blocks(work)
     for i in range(k):
         link = work.link[i]
         K = link.stiffness

@@ -176,3 +176,15 @@ def new_contact_work(capacity: int) -> ContactWork:
         body=table(ISLAND_BODY, 0), place=table(PLACE, 0), later=whole(0), target=whole((0, 3)),
         block=np.zeros((0, 6, 6)),
     )  # fmt: skip
+
+
+def with_bodies(
+    work: ContactWork, contacts: int, bodies: int, room: tuple[int, int]
+) -> ContactWork:
+    """Return work arrays with links of contacts, and with room for blocks of bodies: pairs and updates."""
+    pairs, updates = room
+    return work._replace(
+        link=table(LINK, contacts), body=table(ISLAND_BODY, bodies), place=table(PLACE, bodies),
+        later=np.zeros(pairs, dtype=np.int64), target=np.zeros((updates, 3), dtype=np.int64),
+        block=np.zeros((bodies + 2 * pairs, 6, 6)),
+    )  # fmt: skip

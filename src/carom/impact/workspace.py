@@ -8,7 +8,8 @@ from typing import NamedTuple
 import numpy as np
 
 from carom._compiled.record_arrays import table
-from carom.friction.layout import ContactProblem, ContactWork, new_contact_work
+from carom.friction.graph import Graph, new_graph
+from carom.friction.layout import ContactProblem, ContactWork, new_contact_work, with_bodies
 from carom.impact.multiple.layout import (
     CORNER_CONTACT,
     MultipleResult,
@@ -21,8 +22,12 @@ from carom.model.contact_kinds import is_found, most_points
 from carom.model.laws import PERSISTENT, law_of
 from carom.model.workspace import POINT
 
-#: greatest number of points that are solved together
-MOST_TOGETHER = 192
+#: greatest number of points of a group: with full matrices, and so that they are solved by bodies
+MOST_DENSE, MOST_TOGETHER = 192, 2048
+#: points of a body for which there is room in a large group: a brick in a wall has sixteen
+POINTS_OF_BODY = 16
+#: least number of points of a group that may be solved by its bodies
+LEAST_POINTS = 24
 
 #: a closed point: its contact, and its place in the list of active points
 CLOSED_POINT = [
@@ -54,13 +59,25 @@ CLOSED_POINT = [
 ]
 
 
-#: what a force along a row does to its two bodies (`carom.persistent.by_bodies`)
+#: what a force along a row does to its two bodies, and its equation (`carom.persistent.by_bodies`): `rate`
+#: times the rates of its row and of the other of its disc, + `own` times their forces, + `bound` times that of
+#: its leader. With a factor it is `inverse` times what is asked, + `follow` times its leader, - `lead`
 ARM = [
     ("body", "i8", 2),  # their places in the group, -1 for none
+    ("other", "i8"),  # the other row of its disc, or its own
+    ("leader", "i8"),  # the row of the normal force that bounds it, or its own
     ("row", "f8", (2, 6)),
     ("motion", "f8", (2, 6)),  # by a unit force
-    ("push", "f8", (2, 6)),  # of an unknown: by a unit force with its friction
-    ("stiffness", "f8"),  # of an unknown: 1/(eps S)
+    ("push", "f8", (2, 6)),  # of an unknown: by a unit force with what follows it
+    ("lead", "f8", (2, 6)),
+    ("rate", "f8", 2),
+    ("own", "f8", 2),
+    ("bound", "f8"),
+    ("inverse", "f8", 2),
+    ("follow", "f8"),
+    ("force", "f8"),  # of a product or a solution
+    ("alone", "f8"),  # that force without what follows its leader
+    ("gives", "f8"),  # its rate in a product, or what is asked of it
 ]
 
 
@@ -69,18 +86,18 @@ class Equations(NamedTuple):
 
     rows: np.ndarray  # (3K,) the row of each unknown
     chosen: np.ndarray  # (3K,) rows of those that are shared (`carom.persistent.sharing`)
-    A: np.ndarray  # (3K, 3K)
-    factor: np.ndarray  # (3K, 3K) of A, or of A and a compliance
+    A: np.ndarray  # (3D, 3D)
+    factor: np.ndarray  # (3D, 3D) of A, or of A and a compliance
     pivot: np.ndarray  # (3K,) rows exchanged in the factor
     x: np.ndarray  # (3K,)
     r: np.ndarray  # (3K,) right-hand side, then the error that x leaves
     before: np.ndarray  # (3K,) the unknowns before an iteration of Newton's method
-    directions: np.ndarray  # (3K, 3K) corrections z of x, each before A z (`persistent.settle`)
+    directions: np.ndarray  # (3D, 3K) corrections z of x, each before A z (`persistent.settle`)
     part: np.ndarray  # (3K,) the part of the correction by r in each of them
     arms: np.recarray  # (3K,) ARM
-    motion: np.ndarray  # (6N,) of the bodies
-    #: (2,) number of bodies with arms, 0 if W alone is known; the same of `factor`
-    bodies: np.ndarray
+    tree: ContactWork  # factors of the motion of bodies: its links, bodies and blocks
+    graph: Graph  # of these bodies
+    bodies: np.ndarray  # (1,) their number, if equations are solved by bodies; 0 if W is known
     #: (2,) those of stages that fail in a closing step, and for impulses instead; work of factors (`springs`)
     iterations: np.ndarray
 
@@ -97,17 +114,21 @@ class Bodies(NamedTuple):
 class Group(NamedTuple):
     """The closed points of a group, up to K, with its bodies, contact problem and equations.
 
+    Full matrices have room for D of these points; more are solved by bodies (`carom.persistent.by_bodies`).
+
     Vectors (3K,) have rows n, t1, t2 for each point.
     """
 
     closed: np.recarray  # (K,) CLOSED_POINT
-    count: np.ndarray  # (1,) those that `contact.closed_points` has listed
+    #: (2,) those that `contact.closed_points` has listed; those that found no room in a step
+    count: np.ndarray
     points: np.recarray  # (2, K) POINT: of the present state; of the end of a step
+    own: np.ndarray  # (3K, 3) the part of W in each row that is of its own point
     u: np.ndarray  # (3K,) velocities [m/s]
     p: np.ndarray  # (3K,) impulses [N s] or forces [N]
     a: np.ndarray  # (3K,) accelerations with them [m/s^2]
     back: np.ndarray  # (3K,) errors of positions [m] or velocities, then impulses that remove them
-    idle: np.ndarray  # (2, K, K) the projector to normal forces that move nothing, and its square
+    idle: np.ndarray  # (2, D, D) the projector to normal forces that move nothing, and its square
     #: (L, 1 + 3K, 9) vectors of loads: constant, and by unit forces (`persistent.joint_load`)
     loads: np.ndarray
     vectors: np.ndarray  # (9,) those of a load under all forces
@@ -131,8 +152,9 @@ class MultipleImpact(NamedTuple):
 
 def capacity(system: System, more: bool) -> int:
     """Return the greatest number of closed points in one group; with `more` contacts may be added."""
+    most = min(MOST_TOGETHER, max(MOST_DENSE, POINTS_OF_BODY * system.bodies.size))
     if more:
-        return MOST_TOGETHER
+        return most
     contacts, more_rows = system.contacts, len(system.relations.frictions)
     points = most_points(contacts)
     component = system.bodies["component"]
@@ -140,18 +162,19 @@ def capacity(system: System, more: bool) -> int:
         component[contacts["body"]] != component[contacts["other"]]
     )
     if is_found(contacts).any() or between.any():
-        return max(1, min(MOST_TOGETHER, int(points.sum()) + more_rows))
+        return max(1, min(most, int(points.sum()) + more_rows))
     rows = 1 + (law_of(system, contacts, PERSISTENT)["turning"] > 0.0).sum(axis=1)
     count = np.bincount(component[contacts["body"]], rows * points)
-    return max(1, min(MOST_TOGETHER, int(count.max(initial=0.0)) + more_rows))
+    return max(1, min(most, int(count.max(initial=0.0)) + more_rows))
 
 
 def new_group(system: System, more: bool = False) -> Group:
     """Return the workspace for the largest group of `system`; with `more` contacts may be added."""
     n, k = system.bodies.size, capacity(system, more)
+    dense = min(k, MOST_DENSE)
     u, p, a, back = np.zeros((4, 3 * k))
     problem = ContactProblem(
-        W=np.zeros((3 * k, 3 * k)), c=np.zeros(3 * k), mu=np.zeros(k), kind=np.zeros(k, dtype=np.int64),
+        W=np.zeros((3 * dense, 3 * dense)), c=np.zeros(3 * k), mu=np.zeros(k), kind=np.zeros(k, dtype=np.int64),
         heading=np.zeros((k, 2)),
     )  # fmt: skip
     by_load = int((system.relations.frictions["load"] >= 0).sum())
@@ -161,23 +184,41 @@ def new_group(system: System, more: bool = False) -> Group:
         base=table(STATE, n), free=table(STATE, n),
     )  # fmt: skip
     return Group(
-        closed=table(CLOSED_POINT, k), count=np.zeros(1, dtype=np.int64), points=table(POINT, 2, k),
-        u=u, p=p, a=a, back=back, idle=np.zeros((2, k, k)), loads=loads,
+        closed=table(CLOSED_POINT, k), count=np.zeros(2, dtype=np.int64), points=table(POINT, 2, k),
+        own=np.zeros((3 * k, 3)), u=u, p=p, a=a, back=back, idle=np.zeros((2, dense, dense)), loads=loads,
         vectors=np.zeros(9), secant=secant, bodies=bodies,
-        equations=new_equations(3 * k, n), problem=problem, cone=new_contact_work(k),
+        equations=new_equations(k, n), problem=problem, cone=new_contact_work(dense),
     )  # fmt: skip
 
 
-def new_equations(n: int, bodies: int) -> Equations:
-    """Return a system of up to n unknowns of some bodies; its three matrices take .8 MB for 60 points."""
+def new_equations(points: int, bodies: int) -> Equations:
+    """Return a system for points of some bodies; its three matrices take .8 MB for 60 points."""
+    n, large = 3 * points, points >= LEAST_POINTS
     rows, chosen, pivot = (np.zeros(n, dtype=np.int64) for _ in range(3))
-    A, factor, directions = (np.zeros((n, n)) for _ in range(3))
+    dense = min(n, 3 * MOST_DENSE)
+    A, factor = (np.zeros((dense, dense)) for _ in range(2))
+    directions = np.zeros((dense, n))
     x, r, before, part = (np.zeros(n) for _ in range(4))
+    tree, graph = new_tree(points if large else 0, bodies if large else 0)
     return Equations(
         rows=rows, chosen=chosen, A=A, factor=factor, pivot=pivot, x=x, r=r, before=before,
-        directions=directions, part=part, arms=table(ARM, n), motion=np.zeros(6 * bodies),
-        bodies=np.zeros(2, dtype=np.int64), iterations=np.zeros(2, dtype=np.int64),
+        directions=directions, part=part, arms=table(ARM, n), tree=tree, graph=graph,
+        bodies=np.zeros(1, dtype=np.int64), iterations=np.zeros(2, dtype=np.int64),
     )  # fmt: skip
+
+
+def new_tree(points: int, bodies: int) -> tuple[ContactWork, Graph]:
+    """Return the blocks of bodies and their graph; without room for them a group has full matrices."""
+    if points == 0:
+        return no_tree()
+    room = 4 * points, 128 * points
+    return with_bodies(no_tree()[0], points, bodies, room), new_graph(bodies, points, 0)
+
+
+@cache
+def no_tree() -> tuple[ContactWork, Graph]:
+    """Return the same for a group of a few points: nothing is written to it."""
+    return with_bodies(new_contact_work(1), 0, 0, (0, 0)), new_graph(0, 0, 0)
 
 
 @cache

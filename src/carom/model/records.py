@@ -216,15 +216,18 @@ def one_row(bodies: int, counted: int) -> Records:
     return Records(*saved, *(table(kind, 0) for kind in (TOUCH, IMPACTS, EVENT, SNAPSHOT)))
 
 
-def longer(records: Records, clock: np.recarray) -> Records:
+def longer(records: Records, clock: np.recarray, more: int = 0) -> Records:
     """Return the records with room for twice as many impacts, events and active points.
 
-    Zeros that were never written take no memory.
+    One pass of the loop may write `MARGIN` rows and `more`. Zeros that were never written take no memory.
     """
     ends, out = ends_of(clock), {}
     for name in ("touch", "impact", "event", "snapshot"):
         rows = getattr(records, name)
-        longer, end = np.zeros((2 * len(rows), *rows.shape[1:]), rows.dtype), ends[name] + MARGIN
+        longer, end = (
+            np.zeros((2 * len(rows), *rows.shape[1:]), rows.dtype),
+            ends[name] + MARGIN + more,
+        )
         longer[:end][: len(rows)] = rows[:end]
         out[name] = longer.view(Columns)
     return records._replace(**out)

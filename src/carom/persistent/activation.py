@@ -28,14 +28,14 @@ from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.active_set import activate, regroup, set_anchor, switch, unite_loaded
 from carom.persistent.adhesion import write_pulls
 from carom.persistent.bounces import (
+    after_pull,
     bounces_end,
     end_bounces,
     find_pull,
     horizon_of,
     time_without_torque,
-    velocity_after,
 )
-from carom.persistent.by_bodies import forget_arms
+from carom.persistent.by_bodies import FACTORED, knows_arms, note_arms
 from carom.persistent.coulomb_stage import solve_forces
 from carom.persistent.finish import add_forces_of_corners
 from carom.persistent.jam import jams_among, note_jam
@@ -46,7 +46,7 @@ from carom.persistent.points import weigh
 from carom.persistent.return_to_surfaces import onto_surfaces
 from carom.persistent.rows import slip_of, write_motion
 from carom.persistent.slip_law import set_friction
-from carom.persistent.springs import FACTORED, count_factors
+from carom.persistent.springs import count_factors, note_own
 from carom.persistent.start import accelerate_start, first_stage
 from carom.persistent.thresholds import LEAVING_PART
 from carom.status import TOO_MANY_POINTS
@@ -69,21 +69,29 @@ def activate_contact(model, data, c, horizon):
         hit.code = TOO_MANY_POINTS
     elif k > 0:
         data.group.equations.iterations[FACTORED] = 0
-        activate_group(model, data, k, label, horizon)
+        if not activate_group(model, data, k, label, horizon):
+            hit.code = TOO_MANY_POINTS
         count_factors(data.group, work.step[0])
     regroup(system, active, work)
 
 
 @kernel
 def activate_group(model, data, k, label, horizon):
-    """Judge all k closed points of a group; activate the new ones, deactivate those that open."""
+    """Judge all k closed points of a group; activate the new ones, deactivate those that open.
+
+    Return whether there is room for their equations: matrices have less than bodies.
+    """
     system = model.system
     active, state, group, work = data.active, data.state, data.group, data.work
     clock, records = data.clocks[0], data.records
     work.moment[0].time = clock.now
     rows = add_frictions(system, label, state, k, group, work)
-    inverse_masses(system, rows, group.points[0], state, work, group.problem.W)
-    forget_arms(group)
+    note_arms(system, data, members(work, label, group.bodies.member), rows, state)
+    if not knows_arms(group.equations):
+        if rows > group.idle.shape[1]:
+            return False
+        inverse_masses(system, rows, group.points[0], state, work, group.problem.W)
+        note_own(rows, group)
     if has_loads(group):
         note_responses(system, rows, state, work, group)
     weigh(system, rows, group)
@@ -114,6 +122,7 @@ def activate_group(model, data, k, label, horizon):
     mark_approaching(system, active, k, state, group)
     if stay:
         first_forces(model, data, label, first)
+    return True
 
 
 @kernel
@@ -157,9 +166,7 @@ def decide_active(model, data, k, rows, horizon):
                 if bounces_end(system, contact, u, -a, slow(contact, state), end):
                     group.closed[i].stays, more = 1, True
                     group.closed[i].bounces = time_without_torque(system, contact, u, -a, state)
-            elif turn == 0 and a > max(
-                LEAVING_PART * push, group.p[3 * i] * group.problem.W[3 * i, 3 * i]
-            ):
+            elif turn == 0 and a > max(LEAVING_PART * push, group.p[3 * i] * group.own[3 * i, 0]):
                 group.closed[i].stays = 0  # it has no force
         if not more:
             break
@@ -191,7 +198,7 @@ def stay_with_others(system, state, k, group):
     find_pull(k, 0, 0.0, group)
     for i in range(k):
         contact, u = system.contacts[group.closed[i].contact], group.u[3 * i]
-        left = velocity_after(3 * i, k, group)
+        left = after_pull(3 * i, k, group)
         if u > 0.0 and abs(left) <= max(slow(contact, state), REMAINDER * u):
             group.closed[i].stays = 1
     return True
@@ -221,7 +228,7 @@ def leave_unreachable(system, state, k, group):
         written = True
         for i in range(k):
             if group.closed[i].stays == 1:
-                left = max(left, abs(velocity_after(3 * i, k, group)))
+                left = max(left, abs(after_pull(3 * i, k, group)))
         if not left > VELOCITY_LEFT * most:
             return written
         group.closed[fastest].stays = 0

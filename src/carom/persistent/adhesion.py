@@ -14,6 +14,7 @@ from carom.contact.gap import slow
 from carom.kinematics.contact_point import contact_velocity
 from carom.model.laws import PERSISTENT
 from carom.model.workspace import MOTION_POINT
+from carom.persistent.by_bodies import knows_arms, move_bodies, rate_of_row, rest_bodies
 
 
 @kernel
@@ -42,10 +43,27 @@ def leaves(system, contact, i, state, group):
 
 
 @kernel
+def any_pulls(k, group):
+    """Return whether one of k points has a pull."""
+    for i in range(k):
+        if group.closed[i].pull > 0.0:
+            return True
+    return False
+
+
+@kernel
 def pull_rows(k, share, group, out):
     """Subtract the effect of adhesion in all rows, times `share`: W times the pulls."""
+    by_bodies = any_pulls(k, group) and knows_arms(group.equations)
+    if by_bodies:
+        rest_bodies(group.equations)
+        for i in range(k):
+            arm = group.equations.arms[3 * i]
+            move_bodies(arm, arm.motion, group.closed[i].pull, group.equations.tree.body)
+        for row in range(3 * k):
+            out[row] -= share * rate_of_row(group.equations.arms[row], group.equations)
     for i in range(k):
-        pull = group.closed[i].pull
+        pull = 0.0 if by_bodies else group.closed[i].pull
         for row in range(3 * k if pull > 0.0 else 0):
             out[row] -= share * group.problem.W[row, 3 * i] * pull
 
@@ -53,7 +71,7 @@ def pull_rows(k, share, group, out):
 @kernel
 def pulled(i, group):
     """Return the acceleration of entry i by its part of an adhesion: what cancels it leaves its round-off."""
-    return group.closed[i].pull * group.problem.W[3 * i, 3 * i]
+    return group.closed[i].pull * group.own[3 * i, 0]
 
 
 @kernel

@@ -34,9 +34,15 @@ from carom.law.turning import arm_of_torque
 from carom.model.laws import STRIKES
 from carom.model.workspace import MOTION_PIVOT, MOTION_ROLL
 from carom.persistent.margins import time_to_stop
-from carom.persistent.return_to_surfaces import factor_given, give, greatest_speed, solve_rows
-from carom.persistent.settle import add_product, greatest
-from carom.persistent.springs import given
+from carom.persistent.return_to_surfaces import (
+    factor_given,
+    give,
+    greatest_speed,
+    solve_rows,
+    velocity_after,
+)
+from carom.persistent.settle import greatest
+from carom.persistent.springs import given, place_forces
 from carom.persistent.thresholds import MOST_BOUNCES, PLASTIC_SPEED, REST_SHARE
 
 
@@ -159,7 +165,7 @@ def work_of_pull(k, group):
         if given(group, i):
             normal += 0.5 * x[i] * u[i]
         else:
-            tangential += 0.5 * x[i] * (u[i] + velocity_after(i, k, group))
+            tangential += 0.5 * x[i] * (u[i] + after_pull(i, k, group))
     return normal, tangential
 
 
@@ -181,11 +187,12 @@ def find_pull(k, friction, tiny, group):
             if group.closed[i].rows == 1 and group.problem.kind[i] == SLIDING:
                 for r in range(2):
                     x[3 * i + 1 + r] = -group.problem.mu[i] * group.problem.heading[i, r] * x[3 * i]
+        place_forces(k, x, group)
         if left <= max(tiny, REMAINDER * greatest(3 * k, group.u)):
             return
 
 
 @kernel
-def velocity_after(q, k, group):
-    """Return the velocity of row q after the impulses in RETURN."""
-    return add_product(group.u[q], 3 * k, group.problem.W[q], group.back)
+def after_pull(row, k, group):
+    """Return the velocity in a row after the impulses in RETURN, which `find_pull` has written."""
+    return velocity_after(k, row, group.back, group)

@@ -26,6 +26,7 @@ from carom.model.actions import (
     EVENT_STOP,
     MODE_OPEN,
 )
+from carom.persistent.by_bodies import FACTORED
 from carom.persistent.finish import (
     SLIP_CHANGES,
     SLIP_STAYS,
@@ -38,11 +39,12 @@ from carom.persistent.finish import (
 from carom.persistent.members import explicit_member, implicit_member
 from carom.persistent.return_to_surfaces import note_undetermined
 from carom.persistent.rows import beyond_stop, bodies_of
-from carom.persistent.springs import FACTORED, count_factors
+from carom.persistent.springs import count_factors
 from carom.persistent.start import first_modes, first_stage
 from carom.persistent.step_control import first_acceleration, lost_in_stop, note_unnamed
 from carom.persistent.stops import concerned, is_sought, note_left
 from carom.persistent.thresholds import FALLS, STIFF_SLIP
+from carom.status import TOO_MANY_POINTS
 
 STIFF_ORDER, CLOSING_ORDER = 4, 2
 
@@ -55,7 +57,7 @@ def contact_step(model, data, method, h) -> tuple[float, float, int]:
     are written to the active points. Return the work of loads and of friction, and a status.
     """
     active, work, n = data.active, data.work, data.state.shape[0]
-    data.group.equations.iterations[FACTORED] = 0
+    data.group.equations.iterations[FACTORED], data.group.count[1] = 0, 0
     search, joined = work.search[0], rubs(model.system)
     applied, friction, code = 0.0, 0.0, 0
     search.residual, search.unnamed = 0.0, 0.0
@@ -71,6 +73,8 @@ def contact_step(model, data, method, h) -> tuple[float, float, int]:
         own = step_group(model, data, method, n, h)
         applied, friction, code = applied + own[0], friction + own[1], max(code, own[2])
     count_factors(data.group, work.step[0])
+    if data.group.count[1] > 0:
+        code = TOO_MANY_POINTS
     return applied, friction, code
 
 

@@ -19,17 +19,28 @@ from carom.friction.layout import CONE, SLIDING
 from carom.geometry.thresholds import LAST_DIGIT
 from carom.model.workspace import CONSTANT, MOTION_POINT
 from carom.persistent import thresholds as limits
+from carom.persistent.by_bodies import (
+    FACTORED,
+    PASS,
+    factor_by_bodies,
+    knows_arms,
+    rate_of_row,
+    set_alone,
+    set_on_disc,
+)
 from carom.persistent.joint_load import LOAD_ROUNDS, any_locks, begin_loads, renew_loads
 from carom.persistent.joint_rows import is_driven, radius_of
 from carom.persistent.settle import dot, greatest, settle
-from carom.persistent.sharing import find_idle, share
+from carom.persistent.sharing import hold_shares, share
 from carom.persistent.springs import (
-    FACTORED,
-    PASS,
     factor,
     moves,
     moves_freely,
     note_accelerations,
+    own,
+    place_forces,
+    rate_by_forces,
+    softness_of,
     unload,
 )
 
@@ -67,7 +78,7 @@ def forces_of_stage(k, hg, known, group):
     for turn in range(2 * k + 2):
         if turn > 0 or not shared:
             share(k, list_unknowns(k, group), group)
-        idle = find_idle(k, group)
+        idle = hold_shares(k, group)
         if idle > 0.0 and not newton(k, hg, (HALVES, rough), idle, group):
             idle = 0.0
         if not (
@@ -100,13 +111,14 @@ def solve_forces(k, group):
 @kernel
 def change_loads(k, turn, group):
     """Unload springs that pull, or load one whose point approaches; return whether there is one."""
-    closed, p, push = group.closed, group.p, largest(k, group)
+    closed, push = group.closed, largest(k, group)
     if unload(k, turn < TOGETHER, group) > 0:
         return True
+    place_forces(k, group.p, group)
     for i in range(k):
         if closed[i].motion == MOTION_POINT and closed[i].presses == 0 and closed[i].weight > 0.0:
             if (
-                dot(3 * k, group.problem.W[3 * i], p) + group.problem.c[3 * i]
+                rate_by_forces(k, 3 * i, group) + group.problem.c[3 * i]
                 < -limits.SETTLED_SHARE * push
             ):
                 closed[i].presses = 1
@@ -122,7 +134,7 @@ def largest(k, group):
         if group.closed[i].motion == MOTION_POINT:
             push = max(push, abs(group.problem.c[3 * i]))
         elif group.closed[i].parent == CONSTANT:
-            push = max(push, group.problem.mu[i] * group.problem.W[3 * i + 1, 3 * i + 1])
+            push = max(push, group.problem.mu[i] * own(group, 3 * i + 1))
     return push
 
 
@@ -172,7 +184,7 @@ def newton(k, hg, bounds, idle, group):
         equations.iterations[0] += 1
         for i in range(n):
             r[i], before[i] = -r[i], p[rows[i]]
-        factor(n, rows, group)
+        factor_stage(n, group)
         asked = limits.LINEAR_ERROR * max(enough, limits.LINEAR_SHARE * size)
         rest = settle(n, 0.0, asked, limits.FORCE_ERROR * push, greatest(3 * k, p), equations)
         part, best = 1.0, size
@@ -198,19 +210,46 @@ def newton(k, hg, bounds, idle, group):
 
 
 @kernel
+def factor_stage(n, group):
+    """Write the factor of the Jacobian and eps S: of the matrix, or of the motion of bodies."""
+    equations, rows = group.equations, group.equations.rows
+    if not knows_arms(equations):
+        factor(n, rows, group)
+        return
+    for i in range(n):
+        if equations.arms[rows[i]].own[0] == 0.0:
+            set_alone(equations, rows[i], softness_of(group, rows[i]))
+    for i in range(n):
+        arm = equations.arms[rows[i]]
+        if arm.own[0] != 0.0:
+            softness = softness_of(group, rows[i]), softness_of(group, arm.other)
+            set_on_disc(equations, rows[i], softness)
+    factor_by_bodies(n, rows, equations)
+
+
+@kernel
 def write_equations(k, n, hg, idle, group):
-    """Write the errors of the equations, as accelerations, and their Jacobian A; return the greatest."""
-    rows, i = group.equations.rows, 0
+    """Write the errors of the equations, as accelerations, and their Jacobian; return the greatest.
+
+    The Jacobian is A, or that of the motion of bodies, which the arms of the rows have.
+    """
+    equations, rows, i = group.equations, group.equations.rows, 0
+    by_bodies = knows_arms(equations)
+    place_forces(k, group.p, group)
     while i < n:
         width = 1
-        if rows[i] % 3 == 0:
-            write_normal(k, n, i, idle, group)
-        else:
+        if rows[i] % 3 != 0:
             width = 2 if i + 1 < n and rows[i + 1] // 3 == rows[i] // 3 else 1
-            write_disc(k, n, i, width, hg, group)
+            write_disc(k, n, (i, width), hg, group)
+        elif by_bodies:
+            arm = equations.arms[rows[i]]
+            arm.own[0] = 0.0
+            equations.r[i] = group.problem.c[rows[i]] + rate_of_row(arm, equations)
+        else:
+            write_normal(k, n, i, idle, group)
         i += width
-    group.equations.iterations[FACTORED] += n * n // PASS
-    return greatest(n, group.equations.r)
+    equations.iterations[FACTORED] += (24 * (n + k) if by_bodies else n * n) // PASS
+    return greatest(n, equations.r)
 
 
 @kernel
@@ -228,27 +267,25 @@ def write_normal(k, n, i, idle, group):
 
 
 @kernel
-def write_disc(k, n, i, width, hg, group):
+def write_disc(k, n, place, hg, group):
     """Write the equations of the friction of one point: unknowns i and, if `width` is 2, i + 1."""
-    rows, errors, A = group.equations.rows, group.equations.r, group.equations.A
-    W, p = group.problem.W, group.p
+    (i, width), rows, errors = place, group.equations.rows, group.equations.r
+    p = group.p
     a, b, unit = rows[i], rows[i + width - 1], rows[i] // 3
     closed_point = group.closed[unit]
     normal = 3 * closed_point.parent  # of the force that bounds the friction; below 0 if none does
-    scale = 0.5 * (W[a, a] + W[b, b])
+    scale = 0.5 * (own(group, a) + own(group, b))
     known = closed_point.passes == 1 if hg > 0.0 else group.problem.kind[unit] == SLIDING
     first = group.problem.c[a] if hg == 0.0 else group.u[a] / hg
     second = group.problem.c[b] if hg == 0.0 else group.u[b] / hg
-    ga = first + dot(3 * k, W[a], p)
-    gb = second + dot(3 * k, W[b], p) if width == 2 else 0.0
+    ga = first + rate_by_forces(k, a, group)
+    gb = second + rate_by_forces(k, b, group) if width == 2 else 0.0
     za, zb = p[a] - ga / scale, p[b] - gb / scale if width == 2 else 0.0
     z, radius = math.sqrt(za * za + zb * zb), radius_of(group, unit)
     if known:
         za, zb, z = -group.problem.heading[unit, 0], -group.problem.heading[unit, 1], 1.0
     if not known and z <= radius:
-        for r in range(width):
-            for j in range(n):
-                A[i + r, j] = W[rows[i + r], rows[j]]
+        write_stick(n, (i, width), group)
         errors[i], errors[i + width - 1] = ga, gb if width == 2 else ga
         return
     ea, eb, part = za / z, zb / z, 0.0 if known else radius / z
@@ -256,6 +293,43 @@ def write_disc(k, n, i, width, hg, group):
     if width == 2:
         errors[i + 1] = scale * (p[b] - radius * eb)
     grows = group.problem.mu[unit] if normal >= 0 and p[normal] > 0.0 else 0.0
+    if knows_arms(group.equations):
+        bound_arms((a, b), (ea, eb, part, scale), normal, grows, group.equations)
+    else:
+        write_slope((i, width), n, (ea, eb, part, scale), normal, grows, group)
+
+
+@kernel
+def write_stick(n, place, group):
+    """Write the Jacobian of the friction of one point within its disc."""
+    (i, width), rows, A, W = place, group.equations.rows, group.equations.A, group.problem.W
+    by_bodies = knows_arms(group.equations)
+    for r in range(width):
+        if by_bodies:
+            group.equations.arms[rows[i + r]].own[0] = 0.0
+        for j in range(0 if by_bodies else n):
+            A[i + r, j] = W[rows[i + r], rows[j]]
+
+
+@kernel
+def bound_arms(rows, slope, normal, grows, equations):
+    """Write the Jacobian of friction on its disc to the arms of its rows; they are the same if there is one."""
+    (a, b), (ea, eb, part, scale) = rows, slope
+    across = part * ea * eb if a != b else 0.0
+    for row, other, e in ((b, a, eb), (a, b, ea)):
+        arm, turns = equations.arms[row], part * (1.0 - e * e)
+        arm.other, arm.leader = other, normal if grows > 0.0 else row
+        arm.rate[0], arm.rate[1] = turns, -across
+        arm.own[0], arm.own[1] = scale * (1.0 - turns), scale * across
+        arm.bound = -scale * e * grows
+
+
+@kernel
+def write_slope(place, n, slope, normal, grows, group):
+    """Write the Jacobian of the friction of one point on its disc: e, the part of a change, and a scale."""
+    (i, width), (ea, eb, part, scale) = place, slope
+    rows, A, W = group.equations.rows, group.equations.A, group.problem.W
+    a, b = rows[i], rows[i + width - 1]
     for j in range(n):
         row = rows[j]
         if W[a, row] == 0.0 and W[b, row] == 0.0 and row != normal:  # of bodies elsewhere

@@ -66,7 +66,7 @@ from carom.persistent.slip_law import (
     note_kink,
     set_friction,
 )
-from carom.persistent.springs import solve_springs
+from carom.persistent.springs import own, solve_springs
 from carom.persistent.step_control import rest_speed
 from carom.persistent.stops import locates, note_left
 from carom.persistent.thresholds import (
@@ -156,8 +156,8 @@ def note_modes(model, data, k, h):
 @kernel
 def braked(i, h, group):
     """Return the greatest change of the slip of a point, or of the rate of a joint, by friction in a time h."""
-    W, q = group.problem.W, 3 * i
-    return h * radius_of(group, i) * max(W[q + 1, q + 1], W[q + 2, q + 2])
+    q = 3 * i
+    return h * radius_of(group, i) * max(own(group, q + 1), own(group, q + 2))
 
 
 @kernel

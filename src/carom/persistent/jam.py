@@ -47,6 +47,6 @@ def jams_among(i, found, group):
     """Return whether point i of several jams: it slips, k <= 0, and the contact problem has no solution."""
     if found or group.problem.kind[i] != SLIDING or group.closed[i].motion != MOTION_POINT:
         return 0
-    q, W = 3 * i, group.problem.W
-    along = W[q, q + 1] * group.problem.heading[i, 0] + W[q, q + 2] * group.problem.heading[i, 1]
-    return 1 if W[q, q] - group.problem.mu[i] * along <= 0.0 else 0
+    w = group.own[3 * i]
+    along = w[1] * group.problem.heading[i, 0] + w[2] * group.problem.heading[i, 1]
+    return 1 if w[0] - group.problem.mu[i] * along <= 0.0 else 0

@@ -43,6 +43,7 @@ def _add_frictions(system, state, k, group, work) -> int:
     relations = system.relations
     for i in range(relations.frictions.shape[0]):
         if k == group.closed.shape[0]:
+            group.count[1] += 1
             break
         closed_point, point = group.closed[k], group.points[0][k]
         write_closed(-1, 0, point.core, CONSTANT, closed_point)
@@ -82,7 +83,7 @@ def place_coordinate(system, i, t, point):
 def push_in(i, push, group):
     """Return `push`, or the acceleration of entry i by its own friction: in a joint nothing else may act."""
     if group.closed[i].motion == MOTION_JOINT:
-        return max(push, group.problem.mu[i] * group.problem.W[3 * i + 1, 3 * i + 1])
+        return max(push, group.problem.mu[i] * group.own[3 * i + 1, 1])
     return push
 
 
@@ -101,7 +102,7 @@ def greatest_load(k, group):
     load = greatest(3 * k, group.problem.c)
     for i in range(k):
         if group.closed[i].motion == MOTION_JOINT and group.points[0][i].moves == 1:
-            load = max(load, group.problem.mu[i] * group.problem.W[3 * i + 1, 3 * i + 1])
+            load = max(load, group.problem.mu[i] * group.own[3 * i + 1, 1])
     return load
 
 
@@ -179,7 +180,7 @@ def is_driven(group, i):
     """Return whether entry i is a coordinate to which joints and motors leave no freedom."""
     closed_point = group.closed[i]
     return closed_point.motion == MOTION_JOINT and not (
-        group.problem.W[3 * i + 1, 3 * i + 1] > closed_point.spring
+        group.own[3 * i + 1, 1] > closed_point.spring
     )
 
 

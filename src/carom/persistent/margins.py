@@ -29,6 +29,7 @@ from carom.model.workspace import MOTION_POINT, MOTION_ROLL
 from carom.persistent.adhesion import pulled
 from carom.persistent.joint_rows import greatest_load
 from carom.persistent.rolling_friction import take_torque
+from carom.persistent.springs import own
 from carom.persistent.thresholds import EVENT_ERROR, EVENT_MARGIN, NO_MARGIN
 
 
@@ -69,7 +70,7 @@ def take_forces(active_point, i, group):
         # a contact problem without a solution leaves forces that pull: no contact has them
         active_point.force[r] = group.p[3 * i + r] if group.p[3 * i] > 0.0 else 0.0
         for j in range(3):
-            active_point.W[r, j] = group.problem.W[3 * i + r, 3 * i + j]
+            active_point.W[r, j] = group.own[3 * i + r, j]
 
 
 @kernel
@@ -78,16 +79,16 @@ def set_margins(active_point, i, push, group):
     active_point.lift, active_point.grip = 1.0, 1.0
     if not push > 0.0:
         return
-    q, W, p, a = 3 * i, group.problem.W, group.p, group.a
+    q, p, a = 3 * i, group.p, group.a
     if active_point.next == MODE_OPEN:
         active_point.lift = -max(a[q] / push, 2.0 * EVENT_ERROR)
         return
     if active_point.shares == 0:  # its force is unique: both are continuous
-        active_point.lift = p[q] * W[q, q] / push if p[q] > 0.0 else -a[q] / push
+        active_point.lift = p[q] * own(group, q) / push if p[q] > 0.0 else -a[q] / push
     elif p[q] <= 0.0 and a[q] > NO_MARGIN * push:
         active_point.lift = -a[q] / push
     else:
-        active_point.lift = max(p[q] * W[q, q] / push, EVENT_MARGIN)
+        active_point.lift = max(p[q] * own(group, q) / push, EVENT_MARGIN)
     if active_point.mode == MODE_STICK:
         set_grip(active_point, i, push, group)
 
@@ -95,7 +96,7 @@ def set_margins(active_point, i, push, group):
 @kernel
 def set_grip(active_point, i, push, group):
     """Write the grip of point i, which sticks at the start of the step."""
-    q, W, p, a = 3 * i, group.problem.W, group.p, group.a
+    q, p, a = 3 * i, group.p, group.a
     gain = math.sqrt(a[q + 1] ** 2 + a[q + 2] ** 2) / (push + pulled(i, group))
     if active_point.next == MODE_SLIP:
         active_point.grip = -max(gain, 2.0 * EVENT_ERROR)
@@ -103,7 +104,7 @@ def set_grip(active_point, i, push, group):
         active_point.grip = -gain
     else:
         left = group.problem.mu[i] * p[q] - math.sqrt(p[q + 1] ** 2 + p[q + 2] ** 2)
-        grip = left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push
+        grip = left * max(own(group, q + 1), own(group, q + 2)) / push
         active_point.grip = grip if active_point.shares == 0 else max(grip, EVENT_MARGIN)
 
 

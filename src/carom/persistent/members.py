@@ -16,7 +16,7 @@ from __future__ import annotations
 import math
 
 from carom._compiled.decorators import kernel
-from carom.dynamics.delassus import velocities
+from carom.dynamics.delassus import inverse_masses, velocities
 from carom.dynamics.explicit import (
     add_stages,
     combine_body,
@@ -40,6 +40,7 @@ from carom.geometry.thresholds import ROUND_OFF
 from carom.law.piecewise import any_depends_on_speed
 from carom.model.workspace import CONSTANT, MOTION_POINT
 from carom.persistent.adhesion import pull_rows
+from carom.persistent.by_bodies import knows_arms
 from carom.persistent.coulomb_stage import solve_stage
 from carom.persistent.joint_load import has_loads, hold, renew_loads
 from carom.persistent.joint_rows import is_by_load
@@ -174,7 +175,7 @@ def implicit_stage(model, data, label, s, hg, closes):
             group.closed[i].passes = 0
         known = k == before, rough
         if (closes and lost >= budget(k)) or not solve_beyond(model, data, k, known, hg, closes):
-            if not closes:
+            if not closes or k > group.idle.shape[1]:  # impulses have full matrices
                 return -1, 0.0, 0.0
             solve_impulses(model, data, k, hg)
             struck = True
@@ -269,6 +270,9 @@ def solve_impulses(model, data, k, h):
     """Write forces `p` under which Coulomb's law holds with the velocities h W p + u."""
     group, p = data.group, data.group.p
     count = group.cone.count
+    if knows_arms(group.equations):
+        points, work = group.points[0], data.work
+        inverse_masses(model.system, k, points, work.stage, work, group.problem.W)
     for i in range(3 * k):
         p[i] = 0.0
         group.problem.c[i] = group.u[i]

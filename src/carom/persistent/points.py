@@ -71,6 +71,7 @@ def add_known(system, data, i, k):
     """Add a point whose place is known; return the new count."""
     group, work, one = data.group, data.work, data.active.points[i]
     if k == group.closed.shape[0]:
+        group.count[1] += 1
         return k
     closed_point = group.closed[k]
     write_closed(one.contact, one.feature, one.point, k, closed_point)
@@ -211,6 +212,7 @@ def add_found(system, data, c, touch, j, k):
     """Add a found point, with the active point j of its pair to stand for it; return the new count."""
     group = data.group
     if k == group.closed.shape[0]:
+        group.count[1] += 1
         return k
     add_touch(system.contacts[c], c, touch, data.work.stage, k, group)
     group.closed[k].active, group.closed[k].listed = j, 0
@@ -231,7 +233,9 @@ def add_turning(system, active, k, group):
             continue
         for motion in (MOTION_ROLL, MOTION_PIVOT):
             turns = arm_of_torque(system.laws, contact, motion) > 0.0
-            if turns and total < group.closed.shape[0]:
+            if turns and total == group.closed.shape[0]:
+                group.count[1] += 1
+            elif turns:
                 more, point = group.closed[total], group.points[0][total]
                 write_turning(i, motion, closed_point, more)
                 more.listed = closed_point.listed

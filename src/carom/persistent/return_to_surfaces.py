@@ -27,10 +27,17 @@ from carom.geometry.thresholds import REMAINDER, ROUND_OFF, SUM_ERROR
 from carom.kinematics.contact_point import in_axes, power_of_surface
 from carom.model.actions import MODE_STICK
 from carom.model.workspace import CONSTANT, MOTION_POINT
-from carom.persistent.by_bodies import FACTORED_BY
+from carom.persistent.by_bodies import factor_by_bodies, knows_arms, rate_of_row, set_alone
 from carom.persistent.joint_rows import is_driven
 from carom.persistent.settle import add_product, greatest, settle
-from carom.persistent.springs import last_torque, list_given, response
+from carom.persistent.springs import (
+    last_torque,
+    list_given,
+    own,
+    place_forces,
+    response,
+    write_push,
+)
 from carom.persistent.thresholds import EQUATION_ERROR, PROXIMAL_SPRING
 
 
@@ -71,12 +78,20 @@ def factor_given(k, rubs, group):
     n, equations, W = list_given(k, group), group.equations, group.problem.W
     last = last_torque(k, group)
     rows, A, L = equations.rows, equations.A, equations.factor
+    if knows_arms(equations):
+        for i in range(n):
+            compliance = PROXIMAL_SPRING * own(group, rows[i])
+            if rubs:
+                write_push(last, rows[i], compliance, group)
+            else:
+                set_alone(equations, rows[i], compliance)
+        factor_by_bodies(n, rows, equations)
+        return n
     for i in range(n):
         for j in range(n):
             along = response(last, group, rows[i], rows[j]) if rubs else W[rows[i], rows[j]]
             A[i, j] = L[i, j] = along
         L[i, i] += PROXIMAL_SPRING * W[rows[i], rows[i]]
-    equations.bodies[FACTORED_BY] = 0
     lu.factor(L, n, equations.pivot, 0.0)
     return n
 
@@ -202,16 +217,25 @@ def onto_sticking(system, data, k, count, after):
     for i in range(k):
         for row in range(3 * i, 3 * i + 3):
             x[row] = after * (x[row] - group.p[row])
+    place_forces(k, x, group)
     for i in range(k):  # an impulse does its work at the mean of the velocities before and after it
         for row in range(3 * i + 1, 3 * i + 3):
             if x[row] != 0.0:
-                left = add_product(u[row], 3 * k, group.problem.W[row], x)
+                left = velocity_after(k, row, x, group)
                 rubbed += 0.5 * x[row] * (u[row] + left)
     give(system, k, count, state, group, work)
     driven = 0.0
     for i in range(k):
         driven += power_of_surface(group.points[0][i], state, x[3 * i : 3 * i + 3])
     return driven + onto_tangents(system, data, k, count), rubbed
+
+
+@kernel
+def velocity_after(k, row, x, group):
+    """Return the velocity in a row after the impulses x, whose motion the bodies have (`place_forces`)."""
+    if knows_arms(group.equations):
+        return group.u[row] + rate_of_row(group.equations.arms[row], group.equations)
+    return add_product(group.u[row], 3 * k, group.problem.W[row], x)
 
 
 @kernel

@@ -27,7 +27,7 @@ from carom.law.friction import bound_of_stick
 from carom.law.piecewise import any_depends_on_speed
 from carom.model.workspace import MOTION_JOINT, MOTION_POINT
 from carom.persistent.adhesion import pull_rows, take_pulls, write_pulls
-from carom.persistent.by_bodies import note_arms
+from carom.persistent.by_bodies import knows_arms, note_arms
 from carom.persistent.joint_load import begin_loads, has_loads, note_reactions, note_responses
 from carom.persistent.joint_rows import (
     drift_of_coordinate,
@@ -39,7 +39,7 @@ from carom.persistent.joint_rows import (
 from carom.persistent.memory import is_torque, law_of, slip_at_start
 from carom.persistent.points import find_points
 from carom.persistent.slip_law import follow_laws
-from carom.persistent.springs import bound_per_force
+from carom.persistent.springs import bound_per_force, note_own
 from carom.persistent.thresholds import SLIP_COSINE, STOPPED_SLIP
 
 TURNED, PASSED, SAME = range(3)  # what became of directions of slip within a step (`set_modes`)
@@ -82,8 +82,12 @@ def write_rows(model, data, label, s) -> int:
     points, state = group.points[0], work.stage
     set_surfaces(system, work.moment[0].time)
     k = find_points(system, data, label)
-    inverse_masses(system, k, points, state, work, group.problem.W)
-    note_arms(system, data, members(work, label, group.bodies.member), k)
+    note_arms(system, data, members(work, label, group.bodies.member), k, state)
+    if not knows_arms(group.equations):
+        if k > group.idle.shape[1]:  # no room for matrices: the step ends with TOO_MANY_POINTS
+            group.count[1], k = k - group.idle.shape[1], group.idle.shape[1]
+        inverse_masses(system, k, points, state, work, group.problem.W)
+        note_own(k, group)
     if has_loads(group):
         note_responses(system, k, state, work, group)
     write_pulls(system, data.active, k, state, group)

@@ -16,7 +16,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom.friction import lu
-from carom.persistent.by_bodies import is_factored_by_bodies, multiply_by_bodies, solve_by_bodies
+from carom.persistent.by_bodies import knows_arms, multiply_by_bodies, solve_by_bodies
 from carom.persistent.thresholds import MULTIPLE, REMOVED
 
 CORRECTIONS = 30
@@ -80,8 +80,8 @@ def correct(n, equations, z):
 @kernel
 def solve_regular(n, equations, x):
     """Replace x by the solution of (A + eps S) x = x, with the present factor."""
-    if is_factored_by_bodies(equations):
-        solve_by_bodies(n, equations, x)
+    if knows_arms(equations):
+        solve_by_bodies(n, equations.rows, equations, x)
     else:
         lu.substitute(equations.factor, n, equations.pivot, x)
 
@@ -89,8 +89,8 @@ def solve_regular(n, equations, x):
 @kernel
 def multiply(n, equations, z, q):
     """Write q = A z, four rows at a time: a sum waits for its last term, four do not wait for each other."""
-    if is_factored_by_bodies(equations):
-        multiply_by_bodies(n, equations, z, q)
+    if knows_arms(equations):
+        multiply_by_bodies(n, equations.rows, equations, z, q)
         return
     A = equations.A
     whole = n - n % 4

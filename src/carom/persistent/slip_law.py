@@ -16,7 +16,7 @@ from carom.law.piecewise import any_depends_on_speed
 from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.persistent.joint_rows import radius_of, set_bound
 from carom.persistent.memory import is_torque, law_of, memory_of
-from carom.persistent.settle import dot
+from carom.persistent.springs import own, place_forces, rate_by_forces
 from carom.persistent.thresholds import BREAK_AWAY, FRICTION_LIMIT, LEAST_GRIP
 
 TURNS_BACK = 8  # iterations of a stage in which slip that turns back may still be found to stick
@@ -78,13 +78,13 @@ def breaks_away(i, push, group):
 @kernel
 def grip_by_law(i, push, group):
     """Return the margin of an entry that sticks: of its force, or its gain, as accelerations by `push`."""
-    a, p, W, q = group.a, group.p, group.problem.W, 3 * i
+    a, p, q = group.a, group.p, 3 * i
     if not push > 0.0:
         return 1.0
     if breaks_away(i, push, group):
         return -math.hypot(a[q + 1], a[q + 2]) / push
     left = radius_of(group, i) - math.hypot(p[q + 1], p[q + 2])
-    return max(left * max(W[q + 1, q + 1], W[q + 2, q + 2]) / push, LEAST_GRIP * BREAK_AWAY)
+    return max(left * max(own(group, q + 1), own(group, q + 2)) / push, LEAST_GRIP * BREAK_AWAY)
 
 
 @kernel
@@ -120,12 +120,13 @@ def renew_modes(model, active, k, hg, turn, group):
     `u` has the slip of the stage without its forces. Return whether a mode changes.
     """
     system, p, changed = model.system, group.p, False
+    place_forces(k, p, group)
     for i in range(k):
         closed_point, q = group.closed[i], 3 * i
         if closed_point.listed == 0 or not has_law(system, closed_point):
             continue
-        u1 = group.u[q + 1] + hg * dot(3 * k, group.problem.W[q + 1], p)
-        u2 = group.u[q + 2] + hg * dot(3 * k, group.problem.W[q + 2], p)
+        u1 = group.u[q + 1] + hg * rate_by_forces(k, q + 1, group)
+        u2 = group.u[q + 2] + hg * rate_by_forces(k, q + 2, group)
         full = not math.hypot(p[q + 1], p[q + 2]) < FRICTION_LIMIT * radius_of(group, i)
         slips = slips_by_mode(system, active, closed_point)
         back = turn < TURNS_BACK and goes_back(system, active, closed_point, u1, u2)

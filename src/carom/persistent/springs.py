@@ -22,7 +22,7 @@ stage to the error of the stage: what no force removes is left to the return at 
 
 from __future__ import annotations
 
-from carom._compiled.decorators import kernel
+from carom._compiled.decorators import inlined, kernel
 from carom._compiled.units import unit
 from carom.friction import lu
 from carom.friction.layout import SLIDING
@@ -33,21 +33,20 @@ from carom.model.allowance import COUNT_FACTORS
 from carom.model.workspace import CONSTANT, MOTION_POINT, MOTION_ROLL
 from carom.persistent import thresholds as limits
 from carom.persistent.by_bodies import (
-    FACTORED_BY,
+    FACTORED,
+    PASS,
     factor_by_bodies,
-    goes_by_bodies,
-    is_factored_by_bodies,
+    knows_arms,
     push_by_forces,
     push_by_unknowns,
     rate_of_row,
+    set_alone,
 )
 from carom.persistent.joint_load import LOAD_ROUNDS, renew_loads
 from carom.persistent.joint_rows import greatest_load, is_driven
-from carom.persistent.settle import add_product, greatest, settle, solve_regular
+from carom.persistent.settle import add_product, dot, greatest, settle, solve_regular
 
 SHARES = 6  # rounds until the compliances of stick are found
-FACTORED = 1  # place of the work of factors in `Equations.iterations`: a point has three rows
-PASS = 9  # entries of a matrix: to write or to multiply so many takes the time of one unit of that work
 
 
 @kernel
@@ -143,10 +142,10 @@ def factor_rows(k, group):
     """List the given rows, write R P F^T and the factor of R P F^T + eps S; return their number."""
     equations, n, last = group.equations, list_given(k, group), last_torque(k, group)
     rows, A = equations.rows, equations.A
-    if goes_by_bodies(n, equations):
+    if knows_arms(equations):
         for i in range(n):
-            write_push(last, rows[i], group)
-        equations.iterations[FACTORED] += factor_by_bodies(n, equations) // PASS
+            write_push(last, rows[i], softness_of(group, rows[i]), group)
+        factor_by_bodies(n, rows, equations)
         return n
     for i in range(n):
         for j in range(n):
@@ -159,11 +158,10 @@ def factor_rows(k, group):
 def factor(n, rows, group):
     """Write the factor of A + eps S, with the compliances S of the given rows."""
     A, L = group.equations.A, group.equations.factor
-    group.equations.bodies[FACTORED_BY] = 0
     for i in range(n):
         for j in range(n):
             L[i, j] = A[i, j]
-        L[i, i] += limits.PROXIMAL_SPRING * compliance_of(group, rows[i])
+        L[i, i] += softness_of(group, rows[i])
     _, products = lu.factor(L, n, group.equations.pivot, 0.0)
     group.equations.iterations[FACTORED] += products // 9 + 3 * n * n // PASS
 
@@ -192,13 +190,48 @@ def list_given(k, group):
     return n
 
 
+@inlined
+def own(group, row):
+    """Return the acceleration in a row by a unit force along it."""
+    return group.own[row, row % 3]
+
+
+@kernel
+def note_own(k, group):
+    """Copy the blocks of W of each point."""
+    for row in range(3 * k):
+        for a in range(3):
+            group.own[row, a] = group.problem.W[row, row - row % 3 + a]
+
+
+@kernel
+def rate_by_forces(k, row, group):
+    """Return the acceleration in a row by the forces in `p`, whose motion the bodies have (`place_forces`)."""
+    if knows_arms(group.equations):
+        return rate_of_row(group.equations.arms[row], group.equations)
+    return dot(3 * k, group.problem.W[row], group.p)
+
+
+@kernel
+def place_forces(k, p, group):
+    """Write the motion of the bodies by the forces p, if the group is solved by bodies."""
+    if knows_arms(group.equations):
+        push_by_forces(k, group.equations, p)
+
+
 @kernel
 def compliance_of(group, row):
     """Return the compliance of a row: that of its point, or of its torque, which is as soft as stick."""
     closed_point = group.closed[row // 3]
     if closed_point.motion != MOTION_POINT:
-        return closed_point.stick * group.problem.W[row, row]
+        return closed_point.stick * own(group, row)
     return closed_point.hold if row % 3 > 0 else closed_point.spring
+
+
+@kernel
+def softness_of(group, row):
+    """Return eps S of a row: what the factor adds to its response."""
+    return limits.PROXIMAL_SPRING * compliance_of(group, row)
 
 
 @kernel
@@ -232,10 +265,10 @@ def grip(k, group):
 @kernel
 def moves(group, row):
     """Return whether a force along a row moves its point; if not, its W is round-off (planar motion)."""
-    n, W = row - row % 3, group.problem.W
+    n = row - row % 3
     if group.closed[row // 3].parent == CONSTANT:
         return row % 3 == 1 and not is_driven(group, row // 3)
-    return W[row, row] > ROUND_OFF * (W[n, n] + W[n + 1, n + 1] + W[n + 2, n + 2])
+    return own(group, row) > ROUND_OFF * (own(group, n) + own(group, n + 1) + own(group, n + 2))
 
 
 @kernel
@@ -267,13 +300,10 @@ def response(last, group, a, row):
 
 
 @kernel
-def write_push(last, row, group):
-    """Write the motion by a unit force along a given row, with its friction, and the stiffness of the row."""
+def write_push(last, row, compliance, group):
+    """Write the motion by a unit force along a given row, with its friction, and its compliance."""
     arm, i = group.equations.arms[row], row // 3
-    arm.stiffness = 1.0 / (limits.PROXIMAL_SPRING * compliance_of(group, row))
-    for side in range(2):
-        for j in range(6):
-            arm.push[side, j] = arm.motion[side, j]
+    set_alone(group.equations, row, compliance)
     if row % 3 == 0 and group.problem.kind[i] == SLIDING:
         add_friction(arm, i, group)
     for j in range(i + 1, last if row % 3 == 0 else i):
@@ -334,9 +364,8 @@ def first_forces(k, n, turn, push, group):
 @kernel
 def write_wanted(k, n, group, out):
     """Write the accelerations that the given rows lack under the forces in `p`."""
-    rows, by_bodies = group.equations.rows, is_factored_by_bodies(group.equations)
-    if by_bodies:
-        push_by_forces(k, group.equations, group.p)
+    rows, by_bodies = group.equations.rows, knows_arms(group.equations)
+    place_forces(k, group.p, group)
     for i in range(n):
         out[i] = -acceleration_in(k, rows[i], by_bodies, group)
 
@@ -345,7 +374,7 @@ def write_wanted(k, n, group, out):
 def acceleration_in(k, row, by_bodies, group):
     """Return the acceleration in a row under the forces in `p`, or `by_bodies` in the motion of these."""
     if by_bodies:
-        rate = rate_of_row(group.equations.arms[row], group.equations.motion)
+        rate = rate_of_row(group.equations.arms[row], group.equations)
         return group.problem.c[row] + rate
     return acceleration_of(k, row, group)
 
@@ -381,10 +410,10 @@ def load(k, n, push, group):
         if rows[i] % 3 == 0:  # stick is far softer
             most, force = max(most, abs(r[i])), max(force, abs(p[rows[i]]))
     settle(n, 0.0, limits.SPRING_ERROR * most, 0.0, 0.0, equations)
-    by_bodies = is_factored_by_bodies(equations)
+    by_bodies = knows_arms(equations)
     if by_bodies:
         push_by_forces(k, equations, p)
-        push_by_unknowns(n, equations, -limits.PROXIMAL_SPRING, equations.x)
+        push_by_unknowns(n, rows, equations, -limits.PROXIMAL_SPRING, equations.x)
     for i in range(k):
         row = 3 * i
         if closed[i].motion == MOTION_POINT and closed[i].presses == 0 and closed[i].weight > 0.0:
@@ -392,7 +421,7 @@ def load(k, n, push, group):
             for j in range(0 if by_bodies else n):
                 soft = limits.PROXIMAL_SPRING * response(last, group, row, rows[j])
                 a -= soft * equations.x[j]
-            if a < -max(ROUND_OFF * push, LAST_DIGIT * force * group.problem.W[row, row]):
+            if a < -max(ROUND_OFF * push, LAST_DIGIT * force * own(group, row)):
                 closed[i].presses, count = 1, count + 1
                 # its force is small at first: with the stick of others it would be torn open again
                 closed[i].hold = closed[i].stick / LOADED_PART
@@ -426,9 +455,8 @@ def acceleration_of(k, row, group):
 @kernel
 def note_accelerations(k, group):
     """Write the accelerations of all points under the forces in `p`."""
-    by_bodies = is_factored_by_bodies(group.equations)
-    if by_bodies:
-        push_by_forces(k, group.equations, group.p)
+    by_bodies = knows_arms(group.equations)
+    place_forces(k, group.p, group)
     for row in range(3 * k):
         group.a[row] = acceleration_in(k, row, by_bodies, group)
 

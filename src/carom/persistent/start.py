@@ -27,7 +27,7 @@ from carom.persistent.rows import (
     write_rows,
 )
 from carom.persistent.slip_law import follow_laws, has_law, set_friction
-from carom.persistent.springs import solve_springs
+from carom.persistent.springs import own, solve_springs
 
 
 @kernel
@@ -159,13 +159,13 @@ def rates(k, group):
 
     Of a joint it is at least that of its coordinate: it bounds the steps of order 1.
     """
-    rate, most, W = 0.0, 0.0, group.problem.W
+    rate, most = 0.0, 0.0
     for i in range(k):
         q = 3 * i
         force = math.hypot(group.p[q + 1], group.p[q + 2])
         if group.problem.kind[i] != SLIDING:
             force = max(force, radius_of(group, i))
-        braked = force * max(W[q + 1, q + 1], W[q + 2, q + 2])
+        braked = force * max(own(group, q + 1), own(group, q + 2))
         most = max(most, braked)
         if group.closed[i].parent == CONSTANT:  # where W vanishes it turns back by itself
             most = max(most, abs(group.problem.c[q + 1]))

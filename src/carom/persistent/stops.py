@@ -16,7 +16,7 @@ from carom._compiled.decorators import kernel
 from carom.persistent.joint_rows import greatest_load
 from carom.persistent.memory import memory_of, slip_at_start
 from carom.persistent.rows import slip_of
-from carom.persistent.settle import dot
+from carom.persistent.springs import place_forces, rate_by_forces
 
 
 @kernel
@@ -77,14 +77,15 @@ def pass_stops(model, data, k, hg):
     `u` has the slip of the stage without its forces.
     """
     group, more = data.group, False
+    place_forces(k, group.p, group)
     for i in range(k):
-        closed_point, p, q = group.closed[i], group.p, 3 * i
+        closed_point, q = group.closed[i], 3 * i
         slips, d1, d2, speed = slip_at_start(model.system, data.active, closed_point)
         moves = slips and speed > 0.0 and (d1 != 0.0 or d2 != 0.0)
         if closed_point.listed == 0 or closed_point.passes == 1 or not moves:
             continue
-        u1 = group.u[q + 1] + hg * dot(3 * k, group.problem.W[q + 1], p)
-        u2 = group.u[q + 2] + hg * dot(3 * k, group.problem.W[q + 2], p)
+        u1 = group.u[q + 1] + hg * rate_by_forces(k, q + 1, group)
+        u2 = group.u[q + 2] + hg * rate_by_forces(k, q + 2, group)
         if not u1 * d1 + u2 * d2 > 0.0:
             closed_point.passes, more = 1, True
             group.problem.heading[i, 0], group.problem.heading[i, 1] = d1, d2

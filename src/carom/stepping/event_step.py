@@ -77,7 +77,7 @@ def may_go_on(model, data):
     controls, clock, step = model.controls, data.clocks[0], data.work.step[0]
     if step.since > r.LONG and step.paused == 0:
         return r.PAUSE
-    if full(model.system, data.active, clock, data.records):
+    if full(model.system, data, clock):
         return grow(step, r.FULL_EVENTS)
     many = clock.event - step.first_event > controls.max_impacts or clock.at_once > 1000
     if many or overdone(controls, step):
@@ -208,9 +208,10 @@ def persist(model, data):
 
 
 @inlined
-def full(system, active, clock, records):
+def full(system, data, clock):
     """Return whether the records have no room for one turn of the loop."""
-    rows = r.MARGIN + active.count[0]
+    records = data.records
+    rows = r.MARGIN + data.active.count[0] + data.group.closed.shape[0] - data.group.idle.shape[1]
     last = max(clock.event + 1, clock.struck) + rows
     touches = clock.touched + room_of_touches(system, rows)
     if last > records.event.shape[0] or touches > records.touch.shape[0]:

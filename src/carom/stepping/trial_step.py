@@ -30,7 +30,7 @@ from carom.persistent.events import note_first_stops
 from carom.persistent.margins import note_due
 from carom.persistent.slip_law import share_before_kink
 from carom.persistent.step_control import too_long
-from carom.status import NOT_FINITE, STEP_TOO_SMALL, UNSTABLE
+from carom.status import NOT_FINITE, STEP_TOO_SMALL, TOO_MANY_POINTS, UNSTABLE
 from carom.status import STEP_CUT_TO_NOTHING as STEP_CUT
 from carom.status import TOO_MANY_IMPACTS as TOO_MANY
 from carom.stepping.energy_balance import IN_A_ROW, off_balance
@@ -177,6 +177,8 @@ def fits(model, data):
     clock, search, code = data.clocks[0], work.search[0], work.search[0].code
     dt = search.dt
     error = math.inf
+    if code == TOO_MANY_POINTS:
+        return code
     if code == 0 and controls.order > 0 and (search.active == 0 or may_close(model, data)):
         error = step_error(system, controls.rtol, controls.atol, work)
         if search.active == 1 and not error <= 1.0:  # so it does not go as far as its event

@@ -6,12 +6,11 @@ import math
 
 from carom._compiled.decorators import by_reference, kernel
 from carom.friction import layout as o
+from carom.friction.graph import find_order, of_present_size
 from carom.friction.interior import damped, enter_path, step_along
 from carom.friction.newton import copy
 from carom.friction.residual import residual
 from carom.friction.thresholds import PATH_END, PATH_PROXIMAL
-from carom.stepping.crowd.graph import find_order
-from carom.stepping.crowd.present import of_present_size
 from carom.stepping.crowd.sweeps import bound_torques
 
 OWN_WORK = 6  # products with blocks of a step for each contact, besides those of its factor
@@ -28,9 +27,12 @@ def follow_path(system, crowd, k, n, enough):
     work, p, best = crowd.problem, crowd.problem.vector[o.ITERATE], crowd.problem.vector[o.BEST]
     least, goal, _ = residual(work, k)
     copy(k, p, best)
-    if not find_order(n, k, crowd):
+    if not find_order(n, k, crowd.graph, crowd.problem):
         return least, 0
-    ordered, price = by_reference(of_present_size(crowd, n)), OWN_WORK + crowd.graph.count[2] // k
+    ordered, price = (
+        by_reference(of_present_size(n, crowd.graph, crowd.problem)),
+        OWN_WORK + crowd.graph.count[2] // k,
+    )
     eps, reached, idle, spent, gap = PATH_PROXIMAL, math.inf, 0, 0, 1.0
     bound_torques(system, crowd, k)
     enter_path(ordered, k, min(1.0, least * least))

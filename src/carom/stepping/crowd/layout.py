@@ -9,10 +9,10 @@ import numpy as np
 
 from carom._compiled.record_arrays import table
 from carom.friction import layout as friction
+from carom.friction.graph import Graph, new_graph
 from carom.model.arrays import STATE
 from carom.model.memory import ACTIVE_POINT
 from carom.model.workspace import POINT
-from carom.stepping.crowd.graph import WORD
 from carom.stepping.crowd.mixing import Mixing, new_mixing
 
 #: a point that may touch in the step
@@ -34,17 +34,6 @@ SPOT = [
     ("impulse", "f8", 3),
     ("strikes", "i8"),  # 1 for an impact, 0 for a persistent or far point
 ]
-
-
-class Graph(NamedTuple):
-    """Workspace to find an order of elimination (`carom.stepping.crowd.graph`)."""
-
-    count: np.ndarray  # (4,) bodies, points, updates (-1: no room), pairs
-    body: np.ndarray  # (K, 3) bodies of each point, and the last of its others
-    other: np.ndarray  # (R,) bodies that impulses move through joints
-    near: np.ndarray  # (N, words) neighbours, one bit each
-    degree: np.ndarray  # (N,) number of neighbours, -1 after elimination
-    rank: np.ndarray  # (N,) place in the order
 
 
 MOST_TIED = 64  # bodies with joints in the elimination: with more there are only sweeps
@@ -89,17 +78,12 @@ def new_crowd(bodies: int, active: int, points: int, joined: int = 0) -> Crowd:
     pairs, updates = 4 * points + tied * tied, 128 * points + tied**3
     others = points * max(0, joined - 1)
     whole = partial(np.zeros, dtype=np.int64)
-    problem = friction.new_contact_work(0)._replace(
-        kind=friction.BY_BODIES, contact=table(friction.CONTACT, points), link=table(friction.LINK, points),
-        path=table(friction.PATH, points),
+    problem = friction.with_bodies(friction.new_contact_work(0), points, bodies, (pairs, updates))
+    problem = problem._replace(
+        kind=friction.BY_BODIES, contact=table(friction.CONTACT, points), path=table(friction.PATH, points),
         other=table(friction.OTHER, others), vector=np.zeros((friction.VECTORS, 3 * points)),
-        body=table(friction.ISLAND_BODY, bodies), place=table(friction.PLACE, bodies), later=whole(pairs),
-        target=whole((updates, 3)), block=np.zeros((bodies + 2 * pairs, 6, 6)),
     )  # fmt: skip
-    graph = Graph(
-        count=whole(4), body=whole((points, 3)), other=whole(others),
-        near=whole((bodies, bodies // WORD + 1)), degree=whole(bodies), rank=whole(bodies),
-    )  # fmt: skip
+    graph = new_graph(bodies, points, others)
     flight, flight_middle, middle, pose, pressed = table(STATE, 5, bodies)
     return Crowd(
         closed=table(SPOT, points), count=whole(1), points=table(POINT, 2, points),

@@ -13,6 +13,7 @@ from __future__ import annotations
 from carom._compiled.decorators import by_reference, kernel
 from carom.friction import layout as o
 from carom.friction.alternating import alternate
+from carom.friction.graph import find_order, of_present_size
 from carom.friction.newton import copy, step
 from carom.friction.residual import residual
 from carom.friction.solve import scale_vectors
@@ -22,8 +23,6 @@ from carom.model.workspace import MOTION_POINT
 from carom.persistent.thresholds import CROWD_REST
 from carom.stepping import thresholds as limits
 from carom.stepping.crowd.central_path import follow_path
-from carom.stepping.crowd.graph import find_order
-from carom.stepping.crowd.present import of_present_size
 from carom.stepping.crowd.sweeps import sweep_until
 
 # sweeps: at first; after a step; allowed for all turns but one
@@ -97,10 +96,14 @@ def solve(system, data, k, tolerance, left):
     copy(k, kept, p)
     wrong = not least <= max(limits.WRONG_RESIDUAL * speed, CROWD_REST * tolerance / gamma)
     allowed_residual = max(good, limits.RESIDUAL_LIMIT * speed) if faces else good
-    if not least <= allowed_residual and not has_discs(work, k) and find_order(n, k, crowd):
+    if (
+        not least <= allowed_residual
+        and not has_discs(work, k)
+        and find_order(n, k, crowd.graph, crowd.problem)
+    ):
         at_least = LONG_SPLIT if wrong and not faces else SPLIT
         allowed = LONG_SPLIT if not faces and (wrong or spent < left) else SPLIT
-        ordered = by_reference(of_present_size(crowd, n))
+        ordered = by_reference(of_present_size(n, crowd.graph, crowd.problem))
         least, more = alternate(ordered, k, limits.RHO, enough, at_least, allowed)
         done, spent = done + more, spent + more * k
         copy(k, p, kept)
@@ -139,8 +142,11 @@ def has_discs(work, k):
 @kernel
 def newton_step(crowd, k, n, eps):
     """Make one step of Newton's method, if there is room for it; return its products with blocks."""
-    if not find_order(n, k, crowd):
+    if not find_order(n, k, crowd.graph, crowd.problem):
         return 0
-    work, updates = by_reference(of_present_size(crowd, n)), crowd.graph.count[2]
+    work, updates = (
+        by_reference(of_present_size(n, crowd.graph, crowd.problem)),
+        crowd.graph.count[2],
+    )
     step(work, k, eps)
     return updates + 4 * k

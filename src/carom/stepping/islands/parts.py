@@ -5,6 +5,7 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.contact.point_lists import mark
 from carom.dynamics.explicit import copy_state, mark_active
+from carom.impact.workspace import LEAST_POINTS
 from carom.kinematics.flight import free_flight
 from carom.model.allowance import COUNT_FACTORS, keep_count, left
 from carom.model.arrays import Solver, System
@@ -18,6 +19,7 @@ from carom.stepping.islands.plan import READY, number, root, seek
 
 # of steps of given length: least number of active points of a crowd, and least average number per body
 MANY, EACH = 24, 2
+PRICE_OF_POINT = 100  # work of a factor by bodies for each point
 FACTORS = 20  # factors of W, at least, of a step of a group from event to event
 
 
@@ -165,13 +167,13 @@ def choose(part, controls, active, number, work):
     """Note whether an island moves as a crowd in piece `number`: it is large, or has failed as events lately.
 
     With tolerances it is large if it cannot afford to move one of its groups from event to event, which takes
-    factors of a full matrix W. With given steps it is large if bodies lie on each other at many points, two per
+    factors of its equations. With given steps it is large if bodies lie on each other at many points, two per
     body or more. Bodies that roll on a table or strike in flight move from event to event.
     """
     n, step = part.bodies.shape[0], work.step[0]
     if controls.order > 0:
-        k = float(largest_group(active, work))
-        crowd = FACTORS * k * k * k > left(controls, step, COUNT_FACTORS)
+        price = price_of_group(part, float(largest_group(active, work)))
+        crowd = FACTORS * price > left(controls, step, COUNT_FACTORS)
     else:
         crowd = active.count[0] >= max(MANY, EACH * n)
     for b in range(n):
@@ -180,6 +182,13 @@ def choose(part, controls, active, number, work):
     for b in range(n if step.crowd == 0 else 0):
         if work.body[b].whole_until < number:
             work.body[b].whole_for //= 2
+
+
+@kernel
+def price_of_group(part, k):
+    """Return the work of a factor for k points: of a full matrix, or by bodies if there are no joints."""
+    joined = part.joints.shape[0] > 0 or part.relations.there == 1
+    return k * k * k if joined or k < LEAST_POINTS else PRICE_OF_POINT * k
 
 
 @kernel

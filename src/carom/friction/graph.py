@@ -1,4 +1,4 @@
-"""The order in which the bodies of a crowd are eliminated; it is computed again when other bodies touch.
+"""The order in which the bodies of a crowd or of a large group are eliminated; new when other bodies touch.
 
 Bodies are neighbours if they may touch, or if joints transfer an impulse from one to the other. The body with
 the fewest neighbours is eliminated first; its neighbours become neighbours of each other (minimum degree, with
@@ -7,15 +7,39 @@ rows of bits). The tests have a simple form in Python for comparison (`reference
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
+import numpy as np
+
 from carom._compiled.decorators import entry, kernel
+from carom.friction.layout import ContactWork
 
 WORD = 63  # bits of a row in one int64
 
 
+class Graph(NamedTuple):
+    """Workspace to find an order of elimination for up to K points of N bodies."""
+
+    count: np.ndarray  # (4,) bodies, points, updates (-1: no room), pairs
+    body: np.ndarray  # (K, 3) bodies of each point, and the last of its others
+    other: np.ndarray  # (R,) bodies that impulses move through joints
+    near: np.ndarray  # (N, words) neighbours, one bit each
+    degree: np.ndarray  # (N,) number of neighbours, -1 after elimination
+    rank: np.ndarray  # (N,) place in the order
+
+
+def new_graph(bodies: int, points: int, others: int) -> Graph:
+    """Return the workspace for `bodies` and `points`, of which `others` bodies are moved through joints."""
+    count, other, degree, rank = (np.zeros(n, dtype=np.int64) for n in (4, others, bodies, bodies))
+    body = np.zeros((points, 3), dtype=np.int64)
+    near = np.zeros((bodies, bodies // WORD + 1), dtype=np.int64)
+    return Graph(count=count, body=body, other=other, near=near, degree=degree, rank=rank)
+
+
 @entry
-def find_order(n, k, crowd):
+def find_order(n, k, graph, problem):
     """Write the lists for the present bodies and points, unless they are known; return False without room."""
-    graph, link = crowd.graph, crowd.problem.link
+    link = problem.link
     known = graph.count[0] == n and graph.count[1] == k
     for i in range(k):
         for side in range(2):
@@ -24,26 +48,37 @@ def find_order(n, k, crowd):
         if graph.body[i, 2] != link[i].others_end:
             known, graph.body[i, 2] = False, link[i].others_end
         for e in range(link[i].others, link[i].others_end):
-            if graph.other[e] != crowd.problem.other[e].body:
-                known, graph.other[e] = False, crowd.problem.other[e].body
+            if graph.other[e] != problem.other[e].body:
+                known, graph.other[e] = False, problem.other[e].body
     for i in range(k):
         if link[i].spans == 1:  # blocks have the rows of two bodies: there are only sweeps
             return False
     if known:
         return graph.count[2] >= 0
     graph.count[0], graph.count[1], graph.count[2] = n, k, -1
-    begin(n, k, crowd)
-    if not eliminate(n, crowd) or not write_updates(n, crowd):
+    begin(n, k, graph, problem)
+    if not eliminate(n, graph, problem) or not write_updates(n, graph, problem):
         return False
-    write_corners(k, crowd)
+    write_corners(k, graph, problem)
     return True
 
 
 @kernel
-def begin(n, k, crowd):
+def of_present_size(n, graph, work):
+    """Return a problem with arrays cut to the present numbers of bodies and blocks."""
+    pairs, updates = graph.count[3], graph.count[2]
+    return ContactWork(
+        kind=work.kind, contact=work.contact, vector=work.vector, count=work.count, mismatch=work.mismatch,
+        W=work.W, matrix=work.matrix, pivot=work.pivot, active=work.active, link=work.link, path=work.path,
+        other=work.other, body=work.body[:n], place=work.place[:n], later=work.later[:pairs],
+        target=work.target[:updates], block=work.block[: n + 2 * pairs],
+    )  # fmt: skip
+
+
+@kernel
+def begin(n, k, graph, problem):
     """Write the rows of bits of all bodies."""
-    graph, near, degree = crowd.graph, crowd.graph.near, crowd.graph.degree
-    link, other = crowd.problem.link, crowd.problem.other
+    near, degree, link, other = graph.near, graph.degree, problem.link, problem.other
     words = n // WORD + 1
     for b in range(n):
         degree[b] = 0
@@ -69,9 +104,9 @@ def meet(graph, a, b):
 
 
 @kernel
-def eliminate(n, crowd):
+def eliminate(n, graph, problem):
     """Write the order, and for each body its later neighbours; return False if there is no room."""
-    graph, place, later = crowd.graph, crowd.problem.place, crowd.problem.later
+    place, later = problem.place, problem.later
     near, degree, rank, words, pairs = graph.near, graph.degree, graph.rank, n // WORD + 1, 0
     for t in range(n):
         b = -1
@@ -113,13 +148,13 @@ def merge(graph, i, b, words):
 
 
 @kernel
-def block_of(n, i, j, crowd):
+def block_of(i, j, graph, problem):
     """Return the block of bodies i and j: right of the diagonal if i comes first, otherwise below it."""
     if i == j:
         return i
-    graph, later = crowd.graph, crowd.problem.later
+    n, later = graph.count[0], problem.later
     first, second = (i, j) if graph.rank[i] < graph.rank[j] else (j, i)
-    place = crowd.problem.place[graph.rank[first]]
+    place = problem.place[graph.rank[first]]
     low, high = place.pair, place.pairs_end
     while low < high:
         middle = (low + high) // 2
@@ -131,9 +166,9 @@ def block_of(n, i, j, crowd):
 
 
 @kernel
-def write_updates(n, crowd):
+def write_updates(n, graph, problem):
     """Write which blocks each elimination changes; return False if there is no room."""
-    problem, at = crowd.problem, 0
+    at = 0
     for t in range(n):
         place = problem.place[t]
         d = place.pairs_end - place.pair
@@ -144,25 +179,24 @@ def write_updates(n, crowd):
             for r in range(place.pair, place.pairs_end):
                 row = problem.target[at]
                 row[0], row[1] = s, r
-                row[2] = block_of(n, problem.later[s], problem.later[r], crowd)
+                row[2] = block_of(problem.later[s], problem.later[r], graph, problem)
                 at += 1
         place.updates_end = at
-    crowd.graph.count[2] = at
+    graph.count[2] = at
     return True
 
 
 @kernel
-def write_corners(k, crowd):
+def write_corners(k, graph, problem):
     """Write the blocks of the bodies of each point."""
-    n = crowd.graph.count[0]
     for i in range(k):
-        link = crowd.problem.link[i]
+        link = problem.link[i]
         for r in range(2):
             for s in range(2):
                 a, b = link.body[r], link.body[s]
-                link.corner[r, s] = block_of(n, a, b, crowd) if a >= 0 and b >= 0 else -1
+                link.corner[r, s] = block_of(a, b, graph, problem) if a >= 0 and b >= 0 else -1
         for e in range(link.others, link.others_end):
-            other = crowd.problem.other[e]
+            other = problem.other[e]
             for s in range(2):
                 b = link.body[s]
-                other.corner[s] = block_of(n, other.body, b, crowd) if b >= 0 else -1
+                other.corner[s] = block_of(other.body, b, graph, problem) if b >= 0 else -1

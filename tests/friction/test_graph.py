@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 
-from carom.stepping.crowd.graph import find_order
+from carom.friction.graph import find_order
 from carom.stepping.crowd.layout import new_crowd
 from references.island_graph import island_graph
 
@@ -19,7 +19,7 @@ def test_same_lists(bodies):
     body[rng.random(contacts) < 0.2, 1] = -1
     crowd = new_crowd(bodies, 1, contacts + 40)
     crowd.problem.link.body[:contacts] = body
-    assert find_order(bodies, contacts, crowd)
+    assert find_order(bodies, contacts, crowd.graph, crowd.problem)
     expected = island_graph(bodies, body)
     pairs, updates = len(expected.later), len(expected.target)
     assert crowd.graph.count.tolist() == [bodies, contacts, updates, pairs]
@@ -27,7 +27,7 @@ def test_same_lists(bodies):
     np.testing.assert_array_equal(crowd.problem.later[:pairs], expected.later)
     np.testing.assert_array_equal(crowd.problem.target[:updates], expected.target)
     np.testing.assert_array_equal(crowd.problem.link.corner[:contacts], expected.corner)
-    assert find_order(bodies, contacts, crowd)  # known
+    assert find_order(bodies, contacts, crowd.graph, crowd.problem)  # known
 
 
 def test_without_room_it_says_so():
@@ -36,5 +36,5 @@ def test_without_room_it_says_so():
     crowd = new_crowd(60, 1, len(pairs))
     tight = crowd._replace(problem=crowd.problem._replace(later=crowd.problem.later[:100]))
     tight.problem.link.body[:] = pairs
-    assert not find_order(60, len(pairs), tight)
-    assert not find_order(60, len(pairs), tight)  # known, too
+    assert not find_order(60, len(pairs), tight.graph, tight.problem)
+    assert not find_order(60, len(pairs), tight.graph, tight.problem)  # known, too
