@@ -201,3 +201,20 @@ def test_pivoting_friction_holds_beside_others_that_stick():
     agree(s["box"].velocity[:, 0], 1.0 - 0.3 * G * s.t, atol=1e-13)
     assert s.stats["trial_steps"] < 400
     assert s.stats["whole_steps"] == 0
+
+
+def test_points_found_on_a_static_body_have_room_for_what_turns():
+    # Each point may have an entry of rolling and one of pivoting friction; some had no room before.
+    scene = carom.Scene()
+    slab = scene.add_static(carom.Box(2, 2, 0.2), position=(0, 0, -0.1))
+    rng = np.random.default_rng(5)
+    corners = rng.normal(size=(9, 2))
+    corners *= 0.1 / np.linalg.norm(corners, axis=1)[:, None]
+    prism = carom.Convex([(x, y, z) for z in (-0.02, 0.02) for x, y in corners])
+    low = float(prism.support(np.array((0.0, 0.0, -1.0)))[2])
+    body = scene.add_body(prism, mass=1.0, position=(0, 0, -low), velocity=(0.5, 0.2, 0))
+    scene.add_contact(body, slab, friction=0.3, rolling_friction=1e-3, pivoting_friction=1e-3)
+    s = carom.simulate(scene, 0.5)
+    assert s.stats["whole_steps"] == 0
+    assert len(s.warnings) == 0
+    assert len(s._run.group.closed) >= 3 * 8  # eight points, each with what rolls and what turns

@@ -12,6 +12,7 @@ import carom
 from carom._compiled.record_arrays import Columns, table
 from carom._compiled.template import arrays_of
 from carom._compiled.units import kind
+from carom.impact.workspace import LEAST_POINTS
 from carom.model import compile as compiling
 from carom.model import records
 from ensembles.ensemble_scenes import pendulum
@@ -139,7 +140,10 @@ def own(run):
         system = system._replace(solver=())
         islands = tuple(part for part in islands if part is not run.islands.joined)
     many = run.multiple if len(run.multiple.contact) > 1 else ()
-    return system, run.now, run.active, run.work, islands, run.group, many, run.clock, run.records
+    group = run.group
+    if len(group.closed) < LEAST_POINTS:  # without a graph of bodies
+        group = group._replace(equations=group.equations._replace(tree=(), graph=()))
+    return system, run.now, run.active, run.work, islands, group, many, run.clock, run.records
 
 
 def changes():

@@ -161,9 +161,9 @@ def capacity(system: System, more: bool) -> int:
     between = (contacts["other"] >= 0) & (
         component[contacts["body"]] != component[contacts["other"]]
     )
-    if is_found(contacts).any() or between.any():
-        return max(1, min(most, int(points.sum()) + more_rows))
     rows = 1 + (law_of(system, contacts, PERSISTENT)["turning"] > 0.0).sum(axis=1)
+    if is_found(contacts).any() or between.any():
+        return max(1, min(most, int((rows * points).sum()) + more_rows))
     count = np.bincount(component[contacts["body"]], rows * points)
     return max(1, min(most, int(count.max(initial=0.0)) + more_rows))
 
@@ -212,7 +212,7 @@ def new_tree(points: int, bodies: int) -> tuple[ContactWork, Graph]:
     if points == 0:
         return no_tree()
     room = 4 * points, 128 * points
-    return with_bodies(no_tree()[0], points, bodies, room), new_graph(bodies, points, 0)
+    return with_bodies(new_contact_work(1), points, bodies, room), new_graph(bodies, points, 0)
 
 
 @cache

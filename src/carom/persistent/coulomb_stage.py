@@ -248,7 +248,7 @@ def write_equations(k, n, hg, idle, group):
         else:
             write_normal(k, n, i, idle, group)
         i += width
-    equations.iterations[FACTORED] += (24 * (n + k) if by_bodies else n * n) // PASS
+    equations.iterations[FACTORED] += 24 * (n + k) // PASS if by_bodies else n * n // 2
     return greatest(n, equations.r)
 
 

@@ -34,7 +34,6 @@ from carom.model.workspace import CONSTANT, MOTION_POINT, MOTION_ROLL
 from carom.persistent import thresholds as limits
 from carom.persistent.by_bodies import (
     FACTORED,
-    PASS,
     factor_by_bodies,
     knows_arms,
     push_by_forces,
@@ -163,7 +162,7 @@ def factor(n, rows, group):
             L[i, j] = A[i, j]
         L[i, i] += softness_of(group, rows[i])
     _, products = lu.factor(L, n, group.equations.pivot, 0.0)
-    group.equations.iterations[FACTORED] += products // 9 + 3 * n * n // PASS
+    group.equations.iterations[FACTORED] += products // 9 + n * n
 
 
 @kernel
