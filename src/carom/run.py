@@ -53,6 +53,7 @@ from carom.stepping.islands.layout import (
     roomier,
     together,
     with_partners,
+    with_united,
 )
 from carom.stepping.settings import Settings
 from carom.stepping.thresholds import STEP_SHARE
@@ -287,6 +288,8 @@ class Run:
         elif what == r.NEW_PAIRS:
             noted = self.islands.pair[0, : self.islands.plan[0].noted]
             self.add_pairs(noted[np.lexsort(noted.T[::-1])])
+        elif what == r.CLUSTERS_MEET:
+            self.islands = with_united(self.islands, self.compiled.system)
         elif self.has_crowd:
             self.crowd = roomier_crowd(self.crowd)
         else:

@@ -55,4 +55,6 @@ class Applied:
             self.ctrl[self._column[index]] = value
         put(compiled.system, place, value)
         if self.run.islands.joined.body.size:  # a second time, for the island of loaded bodies
-            put(self.run.islands.joined, place, value)
+            joined = self.run.islands.joined
+            rows = tuple(int(joined.placed[place.kind][row]) for row in place.rows)
+            put(joined, place._replace(rows=rows), value)

@@ -78,7 +78,9 @@ def seek(system, active, now, length, work, islands):
         for k in range(4):
             memory.facing[k] = now[b].Q[k]
     for k in range(1, islands.joined.body.shape[0]):
-        join(member, islands.joined.body[0], islands.joined.body[k])
+        a, b = islands.joined.body[k - 1], islands.joined.body[k]
+        if islands.joined.cluster[a] == islands.joined.cluster[b]:
+            join(member, a, b)
     for i in range(active.count[0]):
         if active.points[i].other >= 0:
             join(member, active.points[i].body, active.points[i].other)
@@ -239,8 +241,15 @@ def number(system, active, now, work, islands):
         if member[b].kind == IN_ISLAND and root(member, b) == b:
             member[b].island = plan.count
             plan.count += 1
-    joined = islands.joined.body
-    plan.joined = member[root(member, joined[0])].island if joined.shape[0] > 0 else -1
+        islands.cluster[b] = -1
+    for b in islands.joined.body:
+        island = member[root(member, b)].island
+        if island < 0:
+            continue
+        if islands.cluster[island] < 0:
+            islands.cluster[island] = islands.joined.cluster[b]
+        elif islands.cluster[island] != islands.joined.cluster[b]:
+            return r.CLUSTERS_MEET
     for s in range(3):
         for i in range(plan.count + 1):
             islands.first[s, i] = 0
@@ -278,8 +287,9 @@ def kind_of(system, b, now, work, islands):
 def list_contacts(system, now, work, islands, phase):
     """Count (phase 0) or write (1) the contacts of islands; contacts with half-spaces come first."""
     member, plan = islands.member, islands.plan[0]
-    for k in range(islands.joined.stops.shape[0]):
-        put(islands, 1, phase, plan.joined, islands.joined.stops[k])
+    for c in islands.joined.stops:
+        b = system.contacts[c].body
+        put(islands, 1, phase, member[root(member, b)].island, c)
     for b in range(system.bodies.shape[0]):
         if member[b].kind == IN_ISLAND:
             for q in range(islands.plane_first[b], islands.plane_first[b + 1]):
@@ -301,9 +311,9 @@ def list_contacts(system, now, work, islands, phase):
 @kernel
 def list_bodies(system, active, islands, phase):
     """Count (phase 0) or write (1) the bodies and the active points of islands, joined bodies first."""
-    member, joined = islands.member, islands.joined.body
-    for k in range(joined.shape[0]):
-        put(islands, 0, phase, islands.plan[0].joined, joined[k])
+    member = islands.member
+    for b in islands.joined.body:
+        put(islands, 0, phase, member[root(member, b)].island, b)
     for b in range(system.bodies.shape[0]):
         if system.bodies[b].ballistic == 1:
             put(islands, 0, phase, member[root(member, b)].island, b)
