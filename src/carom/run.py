@@ -289,6 +289,7 @@ class Run:
             noted = self.islands.pair[0, : self.islands.plan[0].noted]
             self.add_pairs(noted[np.lexsort(noted.T[::-1])])
         elif what == r.CLUSTERS_MEET:
+            self.wake()
             self.islands = with_united(self.islands, self.compiled.system)
         elif self.has_crowd:
             self.crowd = roomier_crowd(self.crowd)
@@ -296,6 +297,13 @@ class Run:
             bodies = len(self.compiled.system.bodies)
             joined = int(np.sum(self.compiled.system.bodies.isolated == 0))
             self.crowd = new_crowd(bodies, len(self.active.points), SPOTS * bodies, joined)
+
+    def wake(self) -> None:
+        """Let joined and loaded bodies that rest move: what acts on them, or which they are, has changed."""
+        points = self.active.points[: self.active.count[0]]
+        loaded = self.compiled.system.bodies["ballistic"] == 0
+        pair = (points["other"] >= 0) & loaded[points["other"]]
+        points["rest"][loaded[points["body"]] | pair] = 0
 
     def add_pairs(self, found: np.ndarray) -> None:
         """Make contacts of pairs (K, 2) of bodies that have come near each other, in this order."""

@@ -10,7 +10,7 @@ from carom.model.compile import compile_scene
 from carom.options import Options
 from carom.stepping.islands.layout import no_islands
 from files.compare import differences
-from islands.test_joined import loads, loop, motion, pull, tree, turn
+from islands.test_joined import loads, loop, tree
 
 J, F = carom.joints, carom.forces
 G, UP = 9.81, (0, 0, 1)
@@ -197,3 +197,97 @@ def test_a_force_that_is_set_acts_on_its_robot():
         turned.append(steps.solution[f"arm{last}"].angular_velocity[:, 1])
     assert np.abs(turned[0]).max() > 0.5
     np.testing.assert_allclose(turned[0], turned[1], atol=1e-9)
+
+
+def at_rest(more):
+    """A robot that stands still at the origin, and what `more` adds to the scene."""
+    scene = carom.Scene(gravity=(0, 0, -G))
+    scene.add_half_space((0, 0, 0), UP)
+    trunk = scene.add_body(carom.Box(0.3, 0.2, 0.1), mass=2.0, position=(0, 0, 0.05), name="trunk")
+    arm = scene.add_body(carom.Box(0.2, 0.05, 0.05), mass=0.3, position=(0, 0, 0.3), name="arm")
+    joint = scene.add_joint(J.Revolute(anchor=(0, 0, 0.3), axis=(0, 1, 0)), trunk, arm)
+    scene.add_force(F.JointSpring(joint, stiffness=1.0, damping=0.02))
+    scene.add_force(F.JointForce(joint, 0.0), name="motor")
+    more(scene, joint)
+    scene.set_contact_default(restitution=0.3, friction=0.3)
+    scene.ignore_contact(trunk, arm)
+    return scene
+
+
+def pendulum(scene, joint=None):
+    """Another mechanism, which swings."""
+    bob = scene.add_body(carom.Sphere(0.05), mass=0.1, position=(5.0, 0, 2.0), name="bob")
+    scene.add_joint(J.Revolute(anchor=(4.0, 0, 2.0), axis=(0, 1, 0)), carom.GROUND, bob)
+
+
+def falling(scene, joint):
+    """A ball that falls on the arm, and the other mechanism."""
+    pendulum(scene)
+    scene.add_body(carom.Sphere(0.05), mass=0.2, position=(0.05, 0, 1.5), name="ball")
+
+
+@pytest.mark.parametrize("how", [{"step": 2e-3}, {"rtol": 1e-7}])
+def test_a_robot_at_rest_sleeps_beside_one_that_moves(how):
+    solution = carom.simulate(at_rest(pendulum), 1.0, **how)
+    assert solution.stats["held_steps"] <= 6
+    assert np.all(solution["arm"].position == solution["arm"].position[0])
+    force = solution["trunk-half_space1"].force[:, 0]
+    np.testing.assert_allclose(force[1:], 2.3 * G, rtol=1e-9)
+
+
+@pytest.mark.parametrize("how", [{"step": 1e-3}, {"rtol": 1e-8}])
+def test_it_wakes_when_it_is_struck(how, monkeypatch):
+    """The ball falls from 1.5 m to the arm; then all is as where nothing ever sleeps."""
+    apart = carom.simulate(at_rest(falling), 0.8, **how)
+    together(monkeypatch)
+    one = carom.simulate(at_rest(falling), 0.8, **how)
+    assert apart.status == one.status == carom.Status.SUCCESS
+    first = np.sqrt(2 * (1.5 - 0.05 - 0.325) / G)
+    assert apart.impacts.time[0] == pytest.approx(first, abs=1e-9)
+    times = np.linspace(0.0, 0.8, 81)
+    a, b = (np.array([s.evaluate(t)[0] for t in times]) for s in (apart, one))
+    assert np.abs(a[-1] - a[0]).max() > 0.01
+    np.testing.assert_allclose(a, b, atol=1e-5)
+    assert np.abs(apart.ledger.residual).max() < 1e-5
+
+
+def test_a_force_that_is_set_wakes_it():
+    """It has slept when its motor begins; then its arm turns as that of a robot that never slept."""
+    turned = []
+    for more in (pendulum, lambda scene, joint: None):  # alone it is the only island
+        steps = carom.Run(at_rest(more), step=1e-3)
+        steps.advance(0.3)
+        steps.set_force("motor", 0.3)
+        steps.advance(0.1)
+        turned.append(steps.solution["arm"].angular_velocity[:, 1])
+    assert np.abs(turned[0]).max() > 0.5
+    np.testing.assert_allclose(turned[0], turned[1], atol=1e-9)
+
+
+def test_what_a_function_of_time_drives_does_not_sleep():
+    """A motor holds the arm, then turns it from .2 s on."""
+
+    def hold(scene, joint):
+        pendulum(scene)
+        scene.add_constraint(carom.constraints.Driver(joint, motion=later), name="drive")
+
+    def later(t):
+        s = max(t - 0.2, 0.0)
+        return 5.0 * s**3, 15.0 * s**2, 30.0 * s
+
+    solution = carom.simulate(at_rest(hold), 0.4, step=1e-3)
+    assert solution.success
+    assert abs(solution["arm"].angular_velocity[-1, 1]) == pytest.approx(0.6, rel=1e-3)
+
+
+def test_a_run_goes_on_while_robots_sleep(tmp_path):
+    """Bit for bit: a file says what rests."""
+    path, scene = tmp_path / "run.h5", at_rest(falling)
+    whole = carom.simulate(scene, **TIMES)
+
+    def stop(done, total):
+        if done >= 0.3 * total:
+            raise KeyboardInterrupt
+
+    carom.simulate(scene, **TIMES, save=path, progress=stop, throw=False)
+    assert differences(whole, carom.resume(path)) == []

@@ -204,6 +204,26 @@ def _lists(rows: np.recarray, names: Sequence[str]) -> list[list[int]]:
     return [[b for b in one if b >= 0] for one in zip(*_columns(rows, *names))]
 
 
+def are_constant(system: System, of: Sorted, moved: Mapping[str, list[list[int]]]) -> np.ndarray:
+    """Return (K,) 1 for each cluster on which nothing acts that changes with time: at rest it stays so."""
+    relations, out = system.relations, np.ones(len(of.ranges), dtype=np.int64)
+    driven = [("relation", _is_driven(relations.relations)), ("friction", _is_driven(relations.frictions))]
+    for kind, rows in zip(TABLES, system.forces):
+        if "address" in (rows.dtype.names or ()):
+            driven.append((kind.name, rows["address"] != 0))
+    touched = [moved[name][k] for name, rows in driven for k in np.flatnonzero(rows).tolist()]
+    sides = system.solver.sides["body"].tolist()
+    touched += [sides[row["first"] : row["last"]] for row in relations.user]
+    for one in touched:
+        out[of.cluster[one[:1]]] = 0
+    return out
+
+
+def _is_driven(rows: np.recarray) -> np.ndarray:
+    """Return which rows have a motion that is no constant."""
+    return (rows["address"] != 0) | (rows["rate"] != 0.0) | (rows["last_piece"] > rows["piece"])
+
+
 def relations_of(relations: Relations, of: Sorted) -> Relations:
     """Return the relations of a scene, sorted by cluster."""
     own = {name: of.taken(key, getattr(relations, name)) for name, (key, _) in SORTED.items()}

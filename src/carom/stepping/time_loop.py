@@ -148,7 +148,7 @@ def move_part(model, data, method, islands):
         end_count(controls, own.work)
         note_gain(controls, step, data.watch[0])
         note_busy(data.clocks[0], own.active, own.work, plan)
-        parts.leave(own.active, islands)
+        parts.leave(own, islands)
     return code
 
 

@@ -19,11 +19,13 @@ import numpy as np
 
 from carom._compiled.decorators import kernel
 from carom._compiled.record_arrays import table
+from carom.geometry.rotation import norm
 from carom.model.arrays import JOINT, LINK, Relations, Solver, System
 from carom.model.clusters import (
     RANGES,
     Connected,
     Sorted,
+    are_constant,
     connected,
     forces_of,
     joints_of,
@@ -37,6 +39,7 @@ from carom.model.graph import Sets
 from carom.model.memory import Memory
 from carom.model.relations import no_relations
 from carom.model.solvers import no_joints
+from carom.model.workspace import RESTS
 
 
 class Joined(NamedTuple):
@@ -49,6 +52,8 @@ class Joined(NamedTuple):
         np.ndarray
     )  # (M,) of each contact: of a stop, the number of its coordinate in the cluster
     ranges: np.recarray  # RANGES, of each cluster
+    constant: np.ndarray  # 1 for each cluster on which nothing acts that changes with time
+    rests: np.ndarray  # 1 for each cluster that is at rest in the present step
     turns: np.ndarray  # (C,) number in the scene of each coordinate
     rubs: np.ndarray  # (F,) number in the scene of each friction
     placed: Forces  # of each row of a table of the scene, its place among those of `forces`
@@ -76,6 +81,7 @@ def joined_bodies(system: System, united: np.ndarray, known: Connected | None = 
     solver = solver_of(system, of)
     return Joined(
         body=of.rows["body"], cluster=of.cluster, stops=stops, solid=solid, ranges=of.ranges,
+        constant=are_constant(system, of, moved), rests=np.zeros(len(of.ranges), dtype=np.int64),
         turns=of.rows["coordinate"], rubs=of.rows["friction"], placed=of.places(),
         links=links_of(system.solver, of), rotor=system.solver.rotor.copy(),
         joints=joints_of(system, of), relations=relations_of(system.relations, of),
@@ -89,9 +95,9 @@ def no_bodies() -> Joined:
     none = np.zeros(0, dtype=np.int64)
     placed = Forces(*(none for _ in Forces._fields))
     return Joined(
-        body=none, cluster=none, stops=none, solid=none, ranges=table(RANGES, 0), turns=none, rubs=none,
-        placed=placed, links=table(LINK, 0), rotor=np.zeros((0, 0)), joints=table(JOINT, 0),
-        relations=no_relations(), forces=no_forces(), solver=no_joints(),
+        body=none, cluster=none, stops=none, solid=none, ranges=table(RANGES, 0), constant=none, rests=none,
+        turns=none, rubs=none, placed=placed, links=table(LINK, 0), rotor=np.zeros((0, 0)),
+        joints=table(JOINT, 0), relations=no_relations(), forces=no_forces(), solver=no_joints(),
     )  # fmt: skip
 
 
@@ -129,6 +135,42 @@ def enter_joined(joined, k, n):
         solver.workspace[b, 0] = math.nan
     for b in range(solver.pose.shape[0]):
         solver.pose[b, 0] = math.nan
+
+
+@kernel
+def rest_whole(joined, work):
+    """Let a cluster rest in the step if an active point of it does: it has come to rest as a whole."""
+    for k in range(joined.rests.shape[0]):
+        joined.rests[k] = 0
+    for b in joined.body:
+        if work.body[b].status == RESTS:
+            joined.rests[joined.cluster[b]] = 1
+    for b in joined.body:
+        if joined.rests[joined.cluster[b]] == 1:
+            work.body[b].status = RESTS
+
+
+@kernel
+def wake(own, work):
+    """Let the joined bodies of an island move: something may have come near, or touched them."""
+    for i in range(own.count[0]):
+        if work.body[own.points[i].body].label == work.body.shape[0]:
+            own.points[i].rest, own.points[i].comes_to_rest = 0, 0
+
+
+@kernel
+def let_rest(own):
+    """Let the joined bodies of an island rest if they have not moved in the last step: no force changes."""
+    work, n, points, still = own.work, own.state.shape[0], own.active.points, False
+    for b in range(n):
+        if work.body[b].label == n and norm(own.state[b].v) + norm(own.state[b].w) > 0.0:
+            return
+    for i in range(own.active.count[0]):
+        joined = work.body[points[i].body].label == n
+        still = still or (joined and points[i].comes_to_rest == 1)
+    for i in range(own.active.count[0] if still else 0):
+        if work.body[points[i].body].label == n:
+            points[i].rest = 1
 
 
 @kernel

@@ -10,7 +10,14 @@ from carom.model.allowance import COUNT_FACTORS, keep_count, left
 from carom.model.arrays import System
 from carom.model.workspace import ActiveSet, Work
 from carom.persistent.active_set import regroup
-from carom.stepping.islands.joined import begin_joined, end_joined, enter_joined
+from carom.stepping.islands.joined import (
+    begin_joined,
+    end_joined,
+    enter_joined,
+    let_rest,
+    rest_whole,
+    wake,
+)
 from carom.stepping.islands.layout import ASLEEP, FLIES
 from carom.stepping.islands.order import comes_before
 from carom.stepping.islands.pieces import wanted_trials
@@ -26,6 +33,7 @@ def begin_step(system, active, now, clocks, work, islands):
     """Find the islands of a step and fill their slots; return `READY`, or the arrays that must grow first."""
     plan, member = islands.plan[0], islands.member
     mark_active(active, work)
+    rest_whole(islands.joined, work)
     code = seek(system, active, now, work.step[0].length, work, islands)
     if code == READY:
         code = number(system, active, now, work, islands)
@@ -124,6 +132,7 @@ def enter(part, own, active, work, islands, clock):
         active_point.contact = slot_of(islands, i, active_point)
         own.count[0] += 1
     regroup(part, own, work)
+    wake(own, work)
     step = work.step[0]
     clock.now, clock.at_once, step.spent, step.tries = step.begin, 0, 0.0, 0
     step.first_touch, step.first_event = clock.touched, clock.event
@@ -210,9 +219,12 @@ def give_up_body(controls, number, step, memory):
 
 
 @kernel
-def leave(own, islands):
+def leave(part, islands):
     """End with island `plan.at`: store its active points for the state after the step."""
-    plan, first = islands.plan[0], islands.first
+    plan, first, own = islands.plan[0], islands.first, part.active
+    k = islands.cluster[plan.at]
+    if k >= 0 and islands.joined.constant[k] == 1 and part.work.step[0].crowd == 0:
+        let_rest(part)
     bodies, contacts = first[0, plan.at], first[1, plan.at]
     for k in range(own.count[0]):
         active_point = islands.points[1, plan.kept]

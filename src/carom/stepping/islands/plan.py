@@ -67,8 +67,8 @@ def seek(system, active, now, length, work, islands):
         m.parent, m.bodies, m.awake = b, 1, 0 if memory.status == RESTS else 1
         m.speed = norm(v) + norm(w) * system.bodies[b].ball
         m.swing = norm(v) + way_of_turn(system.bodies[b], rotate_back(now[b].Q, w))
-        if system.bodies[b].ballistic == 0:  # it never sleeps; `bound` is of the last step
-            m.awake, m.speed = 1, m.speed + memory.bound[0] * length
+        if system.bodies[b].ballistic == 0:  # `bound` is of the last step
+            m.speed += memory.bound[0] * length
         memory.room = m.awake * plan.widen * (m.speed + fall * length) * length
         if not m.speed + fall * length > 0.0:  # it starts from rest, with a force of unknown size
             memory.room = m.awake * (plan.widen - 1.0) * START_ROOM * system.bodies[b].extent
