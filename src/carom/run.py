@@ -288,9 +288,10 @@ class Run:
         elif what == r.NEW_PAIRS:
             noted = self.islands.pair[0, : self.islands.plan[0].noted]
             self.add_pairs(noted[np.lexsort(noted.T[::-1])])
-        elif what == r.CLUSTERS_MEET:
+        elif what in (r.CLUSTERS_MEET, r.CLUSTERS_PART):
             self.wake()
-            self.islands = with_united(self.islands, self.compiled.system)
+            part = what == r.CLUSTERS_PART
+            self.islands = with_united(self.islands, self.compiled.system, part)
         elif self.has_crowd:
             self.crowd = roomier_crowd(self.crowd)
         else:

@@ -162,6 +162,31 @@ def test_robots_that_collide_are_one_cluster(monkeypatch):
     assert np.abs(apart.ledger.residual).max() < 1e-6
 
 
+def test_robots_that_have_parted_are_divided(monkeypatch):
+    """Two that collide and fly apart are one for a hundred steps, then each has its own again."""
+    scene = carom.Scene()
+    for k, v in ((0, 2.0), (1, -2.0)):
+        x = np.array([1.0 * k, 0, 0])
+        one = scene.add_body(carom.Sphere(0.1), mass=1.0, position=x, velocity=(v, 0, 0))
+        two = scene.add_body(
+            carom.Sphere(0.1), mass=0.5, position=x + (0, 0.3, 0), velocity=(v, 0, 0)
+        )
+        scene.add_joint(J.Revolute(anchor=x + (0, 0.15, 0), axis=UP), one, two)
+        scene.ignore_contact(one, two)
+    scene.set_contact_default(restitution=0.8, friction=0.2)
+    steps, clusters = carom.Run(scene, step=1e-3), []
+    for _ in range(60):
+        steps.advance(0.01)
+        clusters.append(steps._run.islands.united.tolist())
+    assert clusters[0] == clusters[-1] == [0, 1]
+    assert 9 <= clusters.count([0, 0]) <= 14
+    apart = steps.solution
+    together(monkeypatch)
+    one = carom.simulate(scene, 0.6, step=1e-3)
+    assert len(apart.impacts) == len(one.impacts) > 0
+    np.testing.assert_allclose(apart.position, one.position, atol=1e-9)
+
+
 def test_a_run_goes_on_after_robots_have_met(tmp_path):
     """Bit for bit: a file says which clusters are one."""
     path, scene = tmp_path / "run.h5", robots(3, 0.5)

@@ -159,11 +159,14 @@ class Sorted:
         # of each row of the scene in its cluster; -1 stays -1
         self.number: dict[str, np.ndarray] = {}
         self.sort("body", np.where(cluster >= 0, cluster, count))
+        none = np.zeros(0, np.int64), np.full(1, -1), np.zeros((count, 2), np.int64)
         for name, rows in moved.items():
+            if not rows:
+                self.rows[name], self.number[name], self._ranges[name] = none
+                continue
             own = [max((cluster[b] for b in one), default=0) for one in rows]
             self.sort(name, np.maximum(np.array(own, dtype=np.int64), 0))
-        for k, kind in enumerate(TABLES):
-            self.ranges["force"][:, k] = self._ranges[kind.name]
+        self.ranges["force"] = np.stack([self._ranges[kind.name] for kind in TABLES], axis=1)
 
     def sort(self, name: str, own: np.ndarray) -> None:
         """Sort the rows of a table; `own` is the cluster of each, and those without bodies are in the first."""
@@ -188,7 +191,7 @@ class Sorted:
     def renumbered(self, rows: Any, **columns: str) -> Any:
         """Return a copy of rows with the numbers in some columns as they are in the clusters."""
         out = rows.copy()
-        for column, name in columns.items():
+        for column, name in columns.items() if len(rows) else ():
             out[column] = self.number[name][out[column]]
         return out
 
@@ -207,7 +210,10 @@ def _lists(rows: np.recarray, names: Sequence[str]) -> list[list[int]]:
 def are_constant(system: System, of: Sorted, moved: Mapping[str, list[list[int]]]) -> np.ndarray:
     """Return (K,) 1 for each cluster on which nothing acts that changes with time: at rest it stays so."""
     relations, out = system.relations, np.ones(len(of.ranges), dtype=np.int64)
-    driven = [("relation", _is_driven(relations.relations)), ("friction", _is_driven(relations.frictions))]
+    driven = [
+        ("relation", _is_driven(relations.relations)),
+        ("friction", _is_driven(relations.frictions)),
+    ]
     for kind, rows in zip(TABLES, system.forces):
         if "address" in (rows.dtype.names or ()):
             driven.append((kind.name, rows["address"] != 0))
@@ -251,6 +257,8 @@ def relations_of(relations: Relations, of: Sorted) -> Relations:
 def joints_of(system: System, of: Sorted) -> np.recarray:
     """Return the joints of a scene, sorted by cluster."""
     joints = of.taken("joint", system.joints, parent="body", child="body")
+    if not (joints["kind"] >= min(*ON_CURVE, STIFF)).any():
+        return joints
     for kinds, name in ((ON_CURVE, "coordinate"), ((STIFF,), "stiff")):
         those = np.isin(joints["kind"], kinds)
         joints["number"][those] = of.number[name][joints["number"][those]]
@@ -261,6 +269,9 @@ def forces_of(forces: Forces, of: Sorted) -> Forces:
     """Return the forces of a scene, sorted by cluster."""
     out = []
     for kind, rows in zip(TABLES, forces):
+        if not len(rows):
+            out.append(rows)
+            continue
         columns = dict.fromkeys(bodies_in(rows), "body")
         if "coordinate" in (rows.dtype.names or ()):
             columns["coordinate"] = "coordinate"

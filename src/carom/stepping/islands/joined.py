@@ -2,7 +2,8 @@
 
 A cluster begins as a component, the bodies that joints and forces connect. An island has the bodies of one
 cluster, or of none, as its first ones. So clusters whose bodies may meet become one: the loop is left, and the
-tables are made anew (`Run.grow`); they stay one, because bodies that have met are likely to meet again.
+tables are made anew (`Run.grow`). Bodies that have met are likely to meet again, so a cluster is divided only
+after many steps in which this was possible.
 
 Tables have parts of their own for each cluster, in which its bodies have the numbers 0 .. K - 1
 (`carom.model.clusters`), and free bodies of an island the numbers after them. State of joints that lasts from
@@ -46,13 +47,15 @@ class Joined(NamedTuple):
     """The joints and loads of K bodies, cluster by cluster; `joints` to `solver` are those of a `System`."""
 
     body: np.ndarray  # (K,) their numbers in the scene
-    cluster: np.ndarray  # (N,) the cluster of each body of the scene, -1 of free ones
+    component: np.ndarray  # (N,) the component of each body of the scene, -1 of free ones
+    cluster: np.ndarray  # (N,) its cluster
     stops: np.ndarray  # (S,) contacts that are stops in joints
     solid: (
         np.ndarray
     )  # (M,) of each contact: of a stop, the number of its coordinate in the cluster
     ranges: np.recarray  # RANGES, of each cluster
     constant: np.ndarray  # 1 for each cluster on which nothing acts that changes with time
+    first: np.ndarray  # (C,) workspace: first body of each component, or cluster
     rests: np.ndarray  # 1 for each cluster that is at rest in the present step
     turns: np.ndarray  # (C,) number in the scene of each coordinate
     rubs: np.ndarray  # (F,) number in the scene of each friction
@@ -80,8 +83,9 @@ def joined_bodies(system: System, united: np.ndarray, known: Connected | None = 
     of.ranges["counted"] = [int(counted[first:last].sum()) for first, last in ends.tolist()]
     solver = solver_of(system, of)
     return Joined(
-        body=of.rows["body"], cluster=of.cluster, stops=stops, solid=solid, ranges=of.ranges,
-        constant=are_constant(system, of, moved), rests=np.zeros(len(of.ranges), dtype=np.int64),
+        body=of.rows["body"], component=component, cluster=of.cluster, stops=stops, solid=solid,
+        ranges=of.ranges, constant=are_constant(system, of, moved),
+        first=np.zeros(component.max() + 1, dtype=np.int64), rests=np.zeros(len(of.ranges), dtype=np.int64),
         turns=of.rows["coordinate"], rubs=of.rows["friction"], placed=of.places(),
         links=links_of(system.solver, of), rotor=system.solver.rotor.copy(),
         joints=joints_of(system, of), relations=relations_of(system.relations, of),
@@ -95,27 +99,26 @@ def no_bodies() -> Joined:
     none = np.zeros(0, dtype=np.int64)
     placed = Forces(*(none for _ in Forces._fields))
     return Joined(
-        body=none, cluster=none, stops=none, solid=none, ranges=table(RANGES, 0), constant=none, rests=none,
-        turns=none, rubs=none, placed=placed, links=table(LINK, 0), rotor=np.zeros((0, 0)),
-        joints=table(JOINT, 0), relations=no_relations(), forces=no_forces(), solver=no_joints(),
+        body=none, component=none, cluster=none, stops=none, solid=none, ranges=table(RANGES, 0),
+        constant=none, first=none, rests=none, turns=none, rubs=none, placed=placed, links=table(LINK, 0),
+        rotor=np.zeros((0, 0)), joints=table(JOINT, 0), relations=no_relations(), forces=no_forces(),
+        solver=no_joints(),
     )  # fmt: skip
 
 
-def clusters_that_met(joined: Joined, united: np.ndarray, parent: np.ndarray) -> np.ndarray:
-    """Return the cluster of each component when sets of bodies, by the `parent` of each, may meet."""
-    number = np.unique(united, return_inverse=True)[1]
-    sets, known = Sets(len(united)), {}
+def clusters_that_meet(joined: Joined, before: np.ndarray, parent: np.ndarray) -> np.ndarray:
+    """Return the cluster of each component: the sets of bodies, by the `parent` of each, and those `before`."""
+    sets, known = Sets(len(before)), {}
+    for one, k in enumerate(before.tolist()):
+        sets.join(k, one)
     for b in joined.body.tolist():
         root = b
         while parent[root] != root:
             root = int(parent[root])
-        k = int(joined.cluster[b])
-        sets.join(known.setdefault(root, k), k)
-    least: dict[int, int] = {}
-    for one, k in zip(united.tolist(), number.tolist()):
-        root = sets.find(k)
-        least[root] = min(least.get(root, one), one)
-    return np.array([least[sets.find(k)] for k in number.tolist()])
+        one = int(joined.component[b])
+        sets.join(known.setdefault(root, one), one)
+    roots = [sets.find(one) for one in range(len(before))]
+    return np.array([roots.index(root) for root in roots])
 
 
 @kernel

@@ -18,7 +18,7 @@ from carom.model.workspace import BODY_WORK, CONTACT_STATE, ActiveSet
 from carom.scene.all_pairs import Defaults
 from carom.stepping.islands.joined import (
     Joined,
-    clusters_that_met,
+    clusters_that_meet,
     joined_bodies,
     no_bodies,
 )
@@ -86,6 +86,9 @@ class Islands(NamedTuple):
     others: Joined  # the same for islands of other bodies: empty
 
     united: np.ndarray  # the cluster of each component, of two or more
+    parted: (
+        np.ndarray
+    )  # (2,) steps in a row in which a cluster could be divided; 1 if one can in this step
     cluster: np.ndarray  # (N,) the cluster in an island, -1 for none
 
     plan: np.recarray  # (1,) PLAN
@@ -174,7 +177,9 @@ def new_islands(system: System, active: ActiveSet, later: Defaults | None = None
     room = 8 * n + 64 if later is not None else min(rows.size, 8 * n + 64)
     grounded = contacts.body[planes], planes
     islands = _islands(n, _partners(system, later), grounded, room, len(active.points))
-    islands = islands._replace(joined=joined_bodies(system, united, known), united=united)
+    parted = np.zeros(2 if united.size else 0, dtype=np.int64)
+    joined = joined_bodies(system, united, known)
+    islands = islands._replace(joined=joined, united=united, parted=parted)
     islands.plan["open"], islands.plan["fixed"] = int(later is not None), rows.size
     return islands
 
@@ -197,10 +202,15 @@ def with_clusters(islands: Islands, system: System) -> Islands:
     return islands._replace(joined=joined_bodies(system, islands.united))
 
 
-def with_united(islands: Islands, system: System) -> Islands:
-    """Return the workspace in which clusters are one whose bodies may meet, as the plan of a step has found."""
-    united = clusters_that_met(islands.joined, islands.united, islands.member["parent"])
-    return with_clusters(islands._replace(united=united), system)
+def with_united(islands: Islands, system: System, part: bool = False) -> Islands:
+    """Return the workspace for the sets that the plan of a step has found: clusters that may meet are one.
+
+    With `part`, those are divided that need not be one.
+    """
+    before = np.arange(len(islands.united)) if part else islands.united
+    united = clusters_that_meet(islands.joined, before, islands.member["parent"])
+    parted = np.zeros_like(islands.parted)
+    return with_clusters(islands._replace(united=united, parted=parted), system)
 
 
 def _partners(system: System, later: Defaults | None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -226,7 +236,7 @@ def _islands(n: int, partners: tuple, grounded: tuple, room: int, points: int) -
     whole, numbers = partial(np.zeros, dtype=np.int64), np.arange(n + 1)
     return Islands(
         apart=int(n > 0), single=_NOWHERE, joined=no_bodies(), others=no_bodies(),
-        united=whole(0), cluster=whole(n), plan=table(PLAN, 1), member=table(MEMBER, n),
+        united=whole(0), parted=whole(0), cluster=whole(n), plan=table(PLAN, 1), member=table(MEMBER, n),
         first=whole((3, n + 1)), body_of=whole(n),
         bodies=table(BODY, n), state=table(STATE, n), memory=table(BODY_WORK, n), which=whole(room),
         contacts=table(CONTACT, room), contact_states=table(CONTACT_STATE, room),

@@ -259,6 +259,8 @@ def end_step(system, active, now, work, islands):
         active.points[i] = islands.points[1, i]
     active.count[0] = plan.kept
     end_joined(system, islands.joined)
+    if islands.parted.shape[0] > 0:
+        islands.parted[0] = islands.parted[0] + 1 if islands.parted[1] == 1 else 0
     plan.planned, plan.widen = 0, 1.0
 
 

@@ -26,6 +26,7 @@ from carom.stepping.thresholds import (
     BALL_SLACK,
     MEETING_STEPS,
     NEAR_REACH,
+    PARTED_STEPS,
     SPEED_UP,
     START_ROOM,
 )
@@ -77,10 +78,7 @@ def seek(system, active, now, length, work, islands):
             islands.centre[b, k] = now[b].x[k]
         for k in range(4):
             memory.facing[k] = now[b].Q[k]
-    for k in range(1, islands.joined.body.shape[0]):
-        a, b = islands.joined.body[k - 1], islands.joined.body[k]
-        if islands.joined.cluster[a] == islands.joined.cluster[b]:
-            join(member, a, b)
+    join_joined(islands, islands.joined.component)
     for i in range(active.count[0]):
         if active.points[i].other >= 0:
             join(member, active.points[i].body, active.points[i].other)
@@ -100,6 +98,43 @@ def seek(system, active, now, length, work, islands):
     if plan.open == 1 and any_new(islands):
         return note_new(system, work, islands)
     sort_pairs(islands)
+    return keep_clusters(islands)
+
+
+@kernel
+def join_joined(islands, number):
+    """Join the sets of joined bodies with the same number."""
+    first = islands.joined.first
+    write_firsts(islands, number)
+    for b in islands.joined.body:
+        join(islands.member, first[number[b]], b)
+
+
+@kernel
+def write_firsts(islands, number):
+    """Write the first of the joined bodies with each number."""
+    joined, first = islands.joined, islands.joined.first
+    for k in range(first.shape[0]):
+        first[k] = -1
+    for b in joined.body:
+        if first[number[b]] < 0:
+            first[number[b]] = b
+
+
+@kernel
+def keep_clusters(islands):
+    """Join the sets of each cluster, unless this was needless for many steps; return as `seek` does."""
+    member, joined, parted = islands.member, islands.joined, islands.parted
+    if parted.shape[0] == 0:
+        return READY
+    if parted[0] >= PARTED_STEPS:
+        return r.CLUSTERS_PART
+    write_firsts(islands, joined.cluster)
+    parted[1] = 0
+    for b in joined.body:
+        if root(member, b) != root(member, joined.first[joined.cluster[b]]):
+            parted[1] = 1
+    join_joined(islands, joined.cluster)
     return READY
 
 
