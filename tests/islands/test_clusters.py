@@ -93,6 +93,17 @@ def test_copies_move_as_one_alone(mechanism):
         np.testing.assert_array_equal(first, one, err_msg=name)
 
 
+@MECHANISMS
+def test_parts_that_are_switched_do_not_concern_the_others(mechanism):
+    """The last force of the first one is off from .2 s on: bit for bit as without the others."""
+    alone, three = beside([mechanism]), beside([mechanism] * 3)
+    for scene in (alone, three):
+        scene.switch(scene.forces[len(alone.forces) - 1], at=0.2)
+    one, all_of_them = (carom.simulate(scene, **TIMES) for scene in (alone, three))
+    assert one.status == all_of_them.status == carom.Status.SUCCESS
+    np.testing.assert_array_equal(all_of_them.position[:, : len(alone.bodies)], one.position)
+
+
 def test_mechanisms_of_all_kinds_side_by_side(monkeypatch):
     """They have one kind of back end, that of closed loops, each its own part of it."""
     scene = beside([tree, loop, loads, tree])
