@@ -53,6 +53,7 @@ from carom.stepping.islands.layout import (
     roomier,
     together,
     with_partners,
+    with_united,
 )
 from carom.stepping.settings import Settings
 from carom.stepping.thresholds import STEP_SHARE
@@ -290,12 +291,23 @@ class Run:
         elif what == r.NEW_PAIRS:
             noted = self.islands.pair[0, : self.islands.plan[0].noted]
             self.add_pairs(noted[np.lexsort(noted.T[::-1])])
+        elif what in (r.CLUSTERS_MEET, r.CLUSTERS_PART):
+            self.wake()
+            part = what == r.CLUSTERS_PART
+            self.islands = with_united(self.islands, self.compiled.system, part)
         elif self.has_crowd:
             self.crowd = roomier_crowd(self.crowd)
         else:
             bodies = len(self.compiled.system.bodies)
             joined = int(np.sum(self.compiled.system.bodies.isolated == 0))
             self.crowd = new_crowd(bodies, len(self.active.points), SPOTS * bodies, joined)
+
+    def wake(self) -> None:
+        """Let joined and loaded bodies that rest move: what acts on them, or which they are, has changed."""
+        points = self.active.points[: self.active.count[0]]
+        loaded = self.compiled.system.bodies["ballistic"] == 0
+        pair = (points["other"] >= 0) & loaded[points["other"]]
+        points["rest"][loaded[points["body"]] | pair] = 0
 
     def add_pairs(self, found: np.ndarray) -> None:
         """Make contacts of pairs (K, 2) of bodies that have come near each other, in this order."""

@@ -6,12 +6,15 @@ With J the derivative of the velocities of all bodies of the scene by those of t
 """
 
 from pathlib import Path
+from unittest.mock import patch
 
 import mujoco
 import numpy as np
 
 import carom
+from carom import run
 from carom.geometry import quaternion
+from carom.stepping.islands.layout import no_islands
 
 DATA = Path(__file__).parents[1] / "data" / "models"
 MODELS = sorted(
@@ -111,15 +114,13 @@ def full_mass(m, d):
 def first_accelerations(scene):
     """Return the accelerations (N, 6) with which a run begins: the first stage of its first step.
 
-    Bodies that are free have none: they have that of gravity, and turn as balls do.
+    Bodies that are free have none: they have that of gravity, and turn as balls do. All bodies move together,
+    because stages are workspace, which islands share.
     """
-    run = carom.simulate(scene, 1e-9, step=1e-9)._run
-    rate = run.work.stages.rate[0].copy()
-    if not run.islands.apart:
-        return rate
-    out, joined = np.tile([*scene.gravity, 0.0, 0.0, 0.0], (len(rate), 1)), run.islands.joined.body
-    out[joined] = rate[: len(joined)]
-    return out
+    with patch.object(run, "new_islands", lambda system, active, later: no_islands(system, active)):
+        made = carom.simulate(scene, 1e-9, step=1e-9)._run
+    free = made.bodies["ballistic"] == 1
+    return np.where(free[:, None], [*scene.gravity, 0.0, 0.0, 0.0], made.work.stages.rate[0])
 
 
 def accelerations(m, d, J, model):

@@ -54,5 +54,8 @@ class Applied:
         if index in self._column:
             self.ctrl[self._column[index]] = value
         put(compiled.system, place, value)
-        if self.run.islands.joined.body.size:  # a second time, for the island of loaded bodies
-            put(self.run.islands.joined, place, value)
+        joined = self.run.islands.joined
+        if joined.body.size:  # a second time, for the islands of loaded bodies
+            rows = tuple(int(joined.placed[place.kind][row]) for row in place.rows)
+            put(joined, place._replace(rows=rows), value)
+            self.run.wake()

@@ -120,8 +120,10 @@ PAUSE = 101  # much work was done: the caller checks for Ctrl-C
 LEFT_BALL = 102  # a body has left the ball that its island gave it
 
 # values of `step.grow`: records of impacts and events, pairs of islands, points of a crowd, points of an
-# impact; contacts, because bodies have come near each other
-FULL_EVENTS, FULL_PAIRS, FULL_SPOTS, FULL_MULTIPLE, NEW_PAIRS = range(5)
+# impact; contacts, because bodies have come near each other; tables of mechanisms that may meet, or have parted
+FULL_EVENTS, FULL_PAIRS, FULL_SPOTS, FULL_MULTIPLE, NEW_PAIRS, CLUSTERS_MEET, CLUSTERS_PART = range(
+    7
+)
 
 # value of `step.since` at which the loop pauses, so that an interrupt is seen: no result depends on it
 LONG = 5e4

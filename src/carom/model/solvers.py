@@ -118,7 +118,7 @@ def loop_solver(touching: list[list[int]], drop: float, poses: int, bodies: int)
     count = np.array([len(bodies) for bodies in touching], dtype=np.int64)
     rows.last = np.cumsum(count)
     rows.first = rows.last - count
-    sides = table(SIDE, int(rows.last[-1]))
+    sides = table(SIDE, int(count.sum()))
     sides.element = np.repeat(np.arange(number), count)
     sides.body = [b for bodies in touching for b in bodies]
     by_body: dict[int, list[int]] = {}

@@ -12,7 +12,9 @@ if TYPE_CHECKING:
 class ForceTable(NamedTuple):
     """The rows of a kind of forces, as kernels read them.
 
-    Columns of the names `BODIES` are numbers of bodies, -1 for the ground, which islands number anew.
+    Columns of the names `BODIES` are numbers of bodies, -1 for the ground, and `coordinate` is that of one:
+    islands number them anew (`carom.model.clusters`). `first` to `last` are the bodies of a function, and
+    `address` is a function, which may change with time: what it acts on does not sleep.
     """
 
     name: str  #: of its field in `System.forces`, and of its file in `carom.dynamics.applied`

@@ -14,6 +14,7 @@ ENERGY_GAIN = 0.25  #: energy that a step exchanges: a step that gains more is c
 STEP_SHARE = 1e-3  #: `Options.energy_tolerance`: energy error that a step of an explicit method may have
 ACTIVE_SHARE = 10.0  #: `STEP_SHARE`: with active points, because the order is lower
 LIMIT_GROWTH = 4.0  #: limit: by which it grows if the shortest step exceeds it
+PARTED_STEPS = 100  #: steps: after which clusters of mechanisms that could be divided in each are divided
 START_ROOM = 1e-3  #: size of the body: room of a body that starts from rest: doubled with each repetition
 BALL_SLACK = 1e-6  #: radius: growth of balls, so that balls in contact overlap
 SPEED_UP = 2.0  #: greatest speed of bodies that may meet: greatest speed of one of them in the step

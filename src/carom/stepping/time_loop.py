@@ -8,6 +8,7 @@ from carom._compiled.decorators import by_reference, entry, inlined, kernel
 from carom._compiled.units import unit
 from carom.contact.depth import watch_depth
 from carom.contact.operations import lost_gap
+from carom.dynamics.applied import part_forces
 from carom.dynamics.known_end import forget_end
 from carom.dynamics.local_scale import local_controls, note_scale
 from carom.model import records as r
@@ -23,6 +24,7 @@ from carom.stepping.energy_balance import forget_whole, note_whole, watch_step
 from carom.stepping.event_step import NOT_FINITE, advance, left_ball
 from carom.stepping.grid import end_of, is_saved
 from carom.stepping.islands import one_island, parts
+from carom.stepping.islands.joined import part_memory, part_relations, part_solver
 from carom.stepping.islands.pieces import end_piece, note_busy, piece_of
 from carom.stepping.islands.plan import READY
 from carom.stepping.record import finite, grow, room_of_touches, save, still
@@ -112,33 +114,54 @@ def step_apart(model, data, method, islands) -> int:
             return grow(step, code)
     code = 0
     while code == 0 and plan.at < plan.count:
-        i = plan.at
-        solver = by_reference(parts.part_solver(islands, i))
-        system = parts.part_system(model.system, islands, i, solver)
-        active = parts.part_active(data.active, islands, i)
-        work = parts.part_work(data.work, islands, i)
-        state = islands.state[islands.first[0, i] : islands.first[0, i + 1]]
-        own = by_reference(
-            Data(
-                state=state, active=by_reference(active), work=by_reference(work), group=data.group,
-                multiple=data.multiple, crowd=data.crowd, clocks=data.clocks, records=data.records,
-                watch=data.watch,
-            )
-        )  # fmt: skip
-        if plan.entered == 0:  # if the loop was left within an island, it has been entered
-            parts.enter(system, own.active, data.active, own.work, islands, data.clocks[0])
-            note_scale(system, model.controls, state, own.work)
-            begin_count(model.controls, own.work)
-            parts.choose(system, model.controls, own.active, plan.pieces, own.work)
-        controls = local_controls(model.controls, step)
-        part = by_reference(Model(by_reference(system), controls))
-        code = move_island(part, own, method)
-        if code == 0:
-            end_count(controls, own.work)
-            note_gain(controls, step, data.watch[0])
-            note_busy(data.clocks[0], own.active, own.work, plan)
-            parts.leave(own.active, islands)
+        code = move_part(model, data, method, islands)
     return REPEAT if code != 0 and retry_apart(model, data, islands, code) else code
+
+
+@kernel
+def move_part(model, data, method, islands):
+    """Move the present island to the end of the step; return 0, or a code."""
+    step, plan = data.work.step[0], islands.plan[0]
+    i, k, joined = plan.at, islands.cluster[plan.at], islands.others
+    joints, relations, forces, solver = (
+        joined.joints,
+        joined.relations,
+        joined.forces,
+        joined.solver,
+    )
+    if k >= 0:
+        joined, n = islands.joined, parts.bodies_of_present(islands)
+        ranges = joined.ranges[k]
+        joints = joined.joints[ranges.joint[0] : ranges.joint[1]]
+        memory = by_reference(part_memory(joined, ranges))
+        relations = by_reference(part_relations(joined, ranges, memory))
+        forces = by_reference(part_forces(joined.forces, ranges.force))
+        solver = by_reference(part_solver(joined, k, n))
+    system = parts.part_system(model.system, islands, i, joints, (relations, forces, solver))
+    active = parts.part_active(data.active, islands, i)
+    work = parts.part_work(data.work, islands, i)
+    state = islands.state[islands.first[0, i] : islands.first[0, i + 1]]
+    own = by_reference(
+        Data(
+            state=state, active=by_reference(active), work=by_reference(work), group=data.group,
+            multiple=data.multiple, crowd=data.crowd, clocks=data.clocks, records=data.records,
+            watch=data.watch,
+        )
+    )  # fmt: skip
+    if plan.entered == 0:  # if the loop was left within an island, it has been entered
+        parts.enter(system, own.active, data.active, own.work, islands, data.clocks[0])
+        note_scale(system, model.controls, state, own.work)
+        begin_count(model.controls, own.work)
+        parts.choose(system, model.controls, own.active, plan.pieces, own.work)
+    controls = local_controls(model.controls, step)
+    part = by_reference(Model(by_reference(system), controls))
+    code = move_island(part, own, method)
+    if code == 0:
+        end_count(controls, own.work)
+        note_gain(controls, step, data.watch[0])
+        note_busy(data.clocks[0], own.active, own.work, plan)
+        parts.leave(own, islands)
+    return code
 
 
 @inlined

@@ -22,6 +22,7 @@ from typing import Any
 
 from carom._compiled.by_number import by_number
 from carom._compiled.decorators import inlined
+from carom.model.forces import Forces
 from carom.scene.forces import TABLES
 
 _FILES = {kind.name: import_module(f"{__name__}.{kind.name}") for kind in TABLES}
@@ -51,6 +52,17 @@ def _each(kinds: tuple[str, ...], name: str, given: str, line: str, total: str) 
         ]
     named = {f"of_{kind}": function for kind, function in own.items()}
     return _written([*lines, f"    return {total}"], named)
+
+
+def _parts():
+    """Return the kernel that makes tables of parts of all tables, whose ranges are rows of `ends`."""
+    tables = [f"forces.{kind}[ends[{k}, 0] : ends[{k}, 1]]" for k, kind in enumerate(_FILES)]
+    return _written(
+        ["def made(forces, ends):", f"    return Forces({', '.join(tables)})"], {"Forces": Forces}
+    )
+
+
+part_forces = _parts()
 
 
 def added(kinds):

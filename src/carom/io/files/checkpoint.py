@@ -15,6 +15,7 @@ import numpy as np
 
 from carom import checks
 from carom.model import records as r
+from carom.stepping.islands.layout import with_clusters
 
 #: what is the same in every run of a scene, holds addresses, or is written anew when a step begins; files that
 #: have it are read without it
@@ -26,8 +27,8 @@ FIXED = {
     "work.first", "work.point", "work.step", "work.search", "work.known", "work.stage", "work.trial",
     "work.part", "work.middle", "work.iterate", "work.mean", "work.beside", "work.origin", "work.struck",
     "work.placed", "work.pair.poses", "work.pair.known", "islands.clock", "islands.single.clock",
-    "islands.joined", "islands.others",
-    "islands.partner", "islands.partner_first", "islands.plane", "islands.plane_first",
+    "islands.joined", "islands.others", "islands.cluster", "islands.plan.joined", "islands.partner",
+    "islands.partner_first", "islands.plane", "islands.plane_first",
 }  # fmt: skip
 
 
@@ -105,6 +106,7 @@ def restore(run, checkpoint: Checkpoint, records: r.Records) -> None:
         one = one.unpacked() if isinstance(one, Packed) else one
         for field in array.dtype.names or (...,):
             array[field] = one[field]
+    run.islands = with_clusters(run.islands, run.compiled.system)
     _put_records(run, records)
 
 

@@ -10,12 +10,18 @@ import numpy as np
 from carom._compiled.record_arrays import table
 from carom.collision.sweep import SweepWork, new_sweep_work
 from carom.model.arrays import BODY, CONTACT, STATE, System
+from carom.model.clusters import connected
 from carom.model.contact_kinds import is_of_joint
 from carom.model.memory import ACTIVE_POINT, TURN_OF_JOINT
 from carom.model.records import CLOCK
 from carom.model.workspace import BODY_WORK, CONTACT_STATE, ActiveSet
 from carom.scene.all_pairs import Defaults
-from carom.stepping.islands.joined import Joined, joined_bodies, no_bodies
+from carom.stepping.islands.joined import (
+    Joined,
+    clusters_that_meet,
+    joined_bodies,
+    no_bodies,
+)
 
 #: state of a body in a step: asleep, in free flight, or in an island
 ASLEEP, FLIES, IN_ISLAND = range(3)
@@ -32,7 +38,6 @@ PLAN = [
     ("open", "i8"),  # 1 if bodies that are no partners get a contact when they may touch
     ("fixed", "i8"),  # contacts from the start, in their order; others follow by their bodies
     ("noted", "i8"),  # pairs of bodies, at the beginning of `pair`, that need contacts
-    ("joined", "i8"),  # the island of the joined and loaded bodies, -1 for none
     ("pieces", "i8"),  # finished pieces of steps (`carom.stepping.islands.pieces`)
     ("piece", "f8"),  # longest length of the next piece, 0 for the whole step
     ("done", "f8"),  # time of the present step in finished pieces
@@ -79,6 +84,12 @@ class Islands(NamedTuple):
     single: SingleIsland
     joined: Joined  # the bodies with joints and loads
     others: Joined  # the same for islands of other bodies: empty
+
+    united: np.ndarray  # the cluster of each component, of two or more
+    parted: (
+        np.ndarray
+    )  # (2,) steps in a row in which a cluster could be divided; 1 if one can in this step
+    cluster: np.ndarray  # (N,) the cluster in an island, -1 for none
 
     plan: np.recarray  # (1,) PLAN
     member: np.recarray  # (N,) MEMBER
@@ -153,7 +164,11 @@ def new_islands(system: System, active: ActiveSet, later: Defaults | None = None
     If `later` is given, its pairs of bodies get contacts when they come near each other (`with_partners`).
     """
     n = system.bodies.size
-    if n == 1 or not system.bodies["ballistic"].any():
+    if n == 1:
+        return no_islands(system, active)
+    known = None if system.bodies["ballistic"].all() else connected(system)
+    united = np.arange(0) if known is None else known.first
+    if not (united.size or system.bodies["ballistic"].any()):
         return no_islands(system, active)
     contacts = system.contacts
     rows = np.arange(contacts.size)
@@ -162,7 +177,9 @@ def new_islands(system: System, active: ActiveSet, later: Defaults | None = None
     room = 8 * n + 64 if later is not None else min(rows.size, 8 * n + 64)
     grounded = contacts.body[planes], planes
     islands = _islands(n, _partners(system, later), grounded, room, len(active.points))
-    islands = islands._replace(joined=joined_bodies(system))
+    parted = np.zeros(2 if united.size else 0, dtype=np.int64)
+    joined = joined_bodies(system, united, known)
+    islands = islands._replace(joined=joined, united=united, parted=parted)
     islands.plan["open"], islands.plan["fixed"] = int(later is not None), rows.size
     return islands
 
@@ -176,6 +193,24 @@ def with_partners(islands: Islands, system: System, later: Defaults) -> Islands:
         gap=np.zeros(len(rows)),
         known=np.zeros(len(rows), dtype=np.int64),
     )
+
+
+def with_clusters(islands: Islands, system: System) -> Islands:
+    """Return the workspace for the clusters that `united` says."""
+    if islands.apart == 0:
+        return islands
+    return islands._replace(joined=joined_bodies(system, islands.united))
+
+
+def with_united(islands: Islands, system: System, part: bool = False) -> Islands:
+    """Return the workspace for the sets that the plan of a step has found: clusters that may meet are one.
+
+    With `part`, those are divided that need not be one.
+    """
+    before = np.arange(len(islands.united)) if part else islands.united
+    united = clusters_that_meet(islands.joined, before, islands.member["parent"])
+    parted = np.zeros_like(islands.parted)
+    return with_clusters(islands._replace(united=united, parted=parted), system)
 
 
 def _partners(system: System, later: Defaults | None) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
@@ -201,7 +236,8 @@ def _islands(n: int, partners: tuple, grounded: tuple, room: int, points: int) -
     whole, numbers = partial(np.zeros, dtype=np.int64), np.arange(n + 1)
     return Islands(
         apart=int(n > 0), single=_NOWHERE, joined=no_bodies(), others=no_bodies(),
-        plan=table(PLAN, 1), member=table(MEMBER, n), first=whole((3, n + 1)), body_of=whole(n),
+        united=whole(0), parted=whole(0), cluster=whole(n), plan=table(PLAN, 1), member=table(MEMBER, n),
+        first=whole((3, n + 1)), body_of=whole(n),
         bodies=table(BODY, n), state=table(STATE, n), memory=table(BODY_WORK, n), which=whole(room),
         contacts=table(CONTACT, room), contact_states=table(CONTACT_STATE, room),
         active_of=whole(points), points=table(ACTIVE_POINT, 2, points), carried=whole(1),

@@ -6,7 +6,6 @@ from carom._compiled.decorators import kernel
 from carom.contact.point_lists import mark
 from carom.dynamics.explicit import copy_state
 from carom.persistent.active_set import regroup
-from carom.stepping.islands.joined import copy_memory
 from carom.stepping.islands.parts import give_up_body
 
 
@@ -31,6 +30,15 @@ def begin_single(system, active, now, clocks, work, start):
     copy_memory(memory.coordinates, memory.frictions, start.turns, start.frictions)
     start.count[0], start.begun[0] = active.count[0], 1
     start.clock[0] = clocks[0]
+
+
+@kernel
+def copy_memory(turns, frictions, kept_turns, kept_frictions):
+    """Copy what a step of joints goes on from."""
+    for i in range(turns.shape[0]):
+        kept_turns[i] = turns[i]
+    for i in range(frictions.shape[0]):
+        kept_frictions[i] = frictions[i]
 
 
 @kernel

@@ -8,10 +8,17 @@ from carom.dynamics.explicit import copy_state, mark_active
 from carom.impact.workspace import LEAST_POINTS
 from carom.kinematics.flight import free_flight
 from carom.model.allowance import COUNT_FACTORS, keep_count, left
-from carom.model.arrays import Solver, System
+from carom.model.arrays import System
 from carom.model.workspace import ActiveSet, Work
 from carom.persistent.active_set import regroup
-from carom.stepping.islands.joined import end_joined, enter_joined
+from carom.stepping.islands.joined import (
+    begin_joined,
+    end_joined,
+    enter_joined,
+    let_rest,
+    rest_whole,
+    wake,
+)
 from carom.stepping.islands.layout import ASLEEP, FLIES
 from carom.stepping.islands.order import comes_before
 from carom.stepping.islands.pieces import wanted_trials
@@ -28,6 +35,7 @@ def begin_step(system, active, now, clocks, work, islands):
     """Find the islands of a step and fill their slots; return `READY`, or the arrays that must grow first."""
     plan, member = islands.plan[0], islands.member
     mark_active(active, work)
+    rest_whole(islands.joined, work)
     code = seek(system, active, now, work.step[0].length, work, islands)
     if code == READY:
         code = number(system, active, now, work, islands)
@@ -48,6 +56,8 @@ def begin_step(system, active, now, clocks, work, islands):
         contact.body = local(islands, contact.body)
         if contact.other >= 0:
             contact.other = local(islands, contact.other)
+        if islands.joined.stops.shape[0] > 0:
+            contact.solid = islands.joined.solid[c]
         islands.contact_states[slot] = active.contact_states[c]
         if contact_state.step != plan.pieces:  # in the last piece nothing was near
             contact_state.leaving = 0
@@ -56,8 +66,7 @@ def begin_step(system, active, now, clocks, work, islands):
         if member[root(member, active.points[i].body)].island < 0:
             islands.points[1, plan.kept] = active.points[i]
             plan.kept += 1
-    if plan.joined >= 0:
-        enter_joined(system, islands.joined)
+    begin_joined(system, islands.joined)
     plan.at, plan.entered, plan.planned, plan.busy = 0, 0, 1, 0
     work.step[0].impacts, work.step[0].owed, work.step[0].whole = clocks[0].impacts, 0.0, 0
     islands.clock[0] = clocks[0]
@@ -72,30 +81,12 @@ def local(islands, b):
 
 
 @kernel
-def joints_of(islands, i):
-    """Return the joints and loads in island i."""
-    return islands.joined if i == islands.plan[0].joined else islands.others
-
-
-@kernel
-def part_solver(islands, i):
-    """Return the back end of island i: the back end of its joints, for its number of bodies."""
-    s, n = joints_of(islands, i).solver, islands.first[0, i + 1] - islands.first[0, i]
-    return Solver(
-        kind=s.kind, links=s.links[:n], rotor=s.rotor[:n], workspace=s.workspace[:n], order=s.order,
-        column=s.column, row=s.row, update=s.update, triple=s.triple, term=s.term, rows=s.rows, sides=s.sides,
-        block=s.block, drop=s.drop, pose=s.pose[:n], usual=s.usual, fine=s.fine, digits=s.digits,
-        scaled=s.scaled[:n],
-    )  # fmt: skip
-
-
-@kernel
-def part_system(system, islands, i, solver):
-    """Return island i as a system."""
-    first, own = islands.first, joints_of(islands, i)
+def part_system(system, islands, i, joints, own):
+    """Return island i as a system; `own` are its relations, forces and back end, by reference."""
+    first, (relations, forces, solver) = islands.first, own
     return System(
         bodies=islands.bodies[first[0, i] : first[0, i + 1]], gravity=system.gravity,
-        joints=own.joints, relations=own.relations, forces=own.forces,
+        joints=joints, relations=relations, forces=forces,
         contacts=islands.contacts[first[1, i] : first[1, i + 1]], vertices=system.vertices,
         laws=system.laws, solids=system.solids, hulls=system.hulls, levels=system.levels,
         moving=system.moving, solver=solver, chart=system.chart,
@@ -131,6 +122,8 @@ def part_work(work, islands, i):
 def enter(part, own, active, work, islands, clock):
     """Begin with island `plan.at`: copy its active points, label its groups, and reset its clock."""
     i = islands.plan[0].at
+    if islands.cluster[i] >= 0:
+        enter_joined(islands.joined, islands.cluster[i], part.bodies.shape[0])
     own.count[0] = 0
     for k in range(islands.first[2, i], islands.first[2, i + 1]):
         active_point = own.points[own.count[0]]
@@ -141,6 +134,7 @@ def enter(part, own, active, work, islands, clock):
         active_point.contact = slot_of(islands, i, active_point)
         own.count[0] += 1
     regroup(part, own, work)
+    wake(own, work)
     step = work.step[0]
     clock.now, clock.at_once, step.spent, step.tries = step.begin, 0, 0.0, 0
     step.first_touch, step.first_event = clock.touched, clock.event
@@ -234,9 +228,12 @@ def give_up_body(controls, number, step, memory):
 
 
 @kernel
-def leave(own, islands):
+def leave(part, islands):
     """End with island `plan.at`: store its active points for the state after the step."""
-    plan, first = islands.plan[0], islands.first
+    plan, first, own = islands.plan[0], islands.first, part.active
+    k = islands.cluster[plan.at]
+    if k >= 0 and islands.joined.constant[k] == 1 and part.work.step[0].crowd == 0:
+        let_rest(part)
     bodies, contacts = first[0, plan.at], first[1, plan.at]
     for k in range(own.count[0]):
         active_point = islands.points[1, plan.kept]
@@ -270,8 +267,9 @@ def end_step(system, active, now, work, islands):
     for i in range(plan.kept):
         active.points[i] = islands.points[1, i]
     active.count[0] = plan.kept
-    if plan.joined >= 0:
-        end_joined(system, islands.joined)
+    end_joined(system, islands.joined)
+    if islands.parted.shape[0] > 0:
+        islands.parted[0] = islands.parted[0] + 1 if islands.parted[1] == 1 else 0
     plan.planned, plan.widen = 0, 1.0
 
 

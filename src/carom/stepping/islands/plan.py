@@ -26,6 +26,7 @@ from carom.stepping.thresholds import (
     BALL_SLACK,
     MEETING_STEPS,
     NEAR_REACH,
+    PARTED_STEPS,
     SPEED_UP,
     START_ROOM,
 )
@@ -67,8 +68,8 @@ def seek(system, active, now, length, work, islands):
         m.parent, m.bodies, m.awake = b, 1, 0 if memory.status == RESTS else 1
         m.speed = norm(v) + norm(w) * system.bodies[b].ball
         m.swing = norm(v) + way_of_turn(system.bodies[b], rotate_back(now[b].Q, w))
-        if system.bodies[b].ballistic == 0:  # it never sleeps; `bound` is of the last step
-            m.awake, m.speed = 1, m.speed + memory.bound[0] * length
+        if system.bodies[b].ballistic == 0:  # `bound` is of the last step
+            m.speed += memory.bound[0] * length
         memory.room = m.awake * plan.widen * (m.speed + fall * length) * length
         if not m.speed + fall * length > 0.0:  # it starts from rest, with a force of unknown size
             memory.room = m.awake * (plan.widen - 1.0) * START_ROOM * system.bodies[b].extent
@@ -77,8 +78,7 @@ def seek(system, active, now, length, work, islands):
             islands.centre[b, k] = now[b].x[k]
         for k in range(4):
             memory.facing[k] = now[b].Q[k]
-    for k in range(1, islands.joined.body.shape[0]):
-        join(member, islands.joined.body[0], islands.joined.body[k])
+    join_joined(islands, islands.joined.component)
     for i in range(active.count[0]):
         if active.points[i].other >= 0:
             join(member, active.points[i].body, active.points[i].other)
@@ -98,6 +98,43 @@ def seek(system, active, now, length, work, islands):
     if plan.open == 1 and any_new(islands):
         return note_new(system, work, islands)
     sort_pairs(islands)
+    return keep_clusters(islands)
+
+
+@kernel
+def join_joined(islands, number):
+    """Join the sets of joined bodies with the same number."""
+    first = islands.joined.first
+    write_firsts(islands, number)
+    for b in islands.joined.body:
+        join(islands.member, first[number[b]], b)
+
+
+@kernel
+def write_firsts(islands, number):
+    """Write the first of the joined bodies with each number."""
+    joined, first = islands.joined, islands.joined.first
+    for k in range(first.shape[0]):
+        first[k] = -1
+    for b in joined.body:
+        if first[number[b]] < 0:
+            first[number[b]] = b
+
+
+@kernel
+def keep_clusters(islands):
+    """Join the sets of each cluster, unless this was needless for many steps; return as `seek` does."""
+    member, joined, parted = islands.member, islands.joined, islands.parted
+    if parted.shape[0] == 0:
+        return READY
+    if parted[0] >= PARTED_STEPS:
+        return r.CLUSTERS_PART
+    write_firsts(islands, joined.cluster)
+    parted[1] = 0
+    for b in joined.body:
+        if root(member, b) != root(member, joined.first[joined.cluster[b]]):
+            parted[1] = 1
+    join_joined(islands, joined.cluster)
     return READY
 
 
@@ -239,8 +276,15 @@ def number(system, active, now, work, islands):
         if member[b].kind == IN_ISLAND and root(member, b) == b:
             member[b].island = plan.count
             plan.count += 1
-    joined = islands.joined.body
-    plan.joined = member[root(member, joined[0])].island if joined.shape[0] > 0 else -1
+        islands.cluster[b] = -1
+    for b in islands.joined.body:
+        island = member[root(member, b)].island
+        if island < 0:
+            continue
+        if islands.cluster[island] < 0:
+            islands.cluster[island] = islands.joined.cluster[b]
+        elif islands.cluster[island] != islands.joined.cluster[b]:
+            return r.CLUSTERS_MEET
     for s in range(3):
         for i in range(plan.count + 1):
             islands.first[s, i] = 0
@@ -278,8 +322,9 @@ def kind_of(system, b, now, work, islands):
 def list_contacts(system, now, work, islands, phase):
     """Count (phase 0) or write (1) the contacts of islands; contacts with half-spaces come first."""
     member, plan = islands.member, islands.plan[0]
-    for k in range(islands.joined.stops.shape[0]):
-        put(islands, 1, phase, plan.joined, islands.joined.stops[k])
+    for c in islands.joined.stops:
+        b = system.contacts[c].body
+        put(islands, 1, phase, member[root(member, b)].island, c)
     for b in range(system.bodies.shape[0]):
         if member[b].kind == IN_ISLAND:
             for q in range(islands.plane_first[b], islands.plane_first[b + 1]):
@@ -301,9 +346,9 @@ def list_contacts(system, now, work, islands, phase):
 @kernel
 def list_bodies(system, active, islands, phase):
     """Count (phase 0) or write (1) the bodies and the active points of islands, joined bodies first."""
-    member, joined = islands.member, islands.joined.body
-    for k in range(joined.shape[0]):
-        put(islands, 0, phase, islands.plan[0].joined, joined[k])
+    member = islands.member
+    for b in islands.joined.body:
+        put(islands, 0, phase, member[root(member, b)].island, b)
     for b in range(system.bodies.shape[0]):
         if system.bodies[b].ballistic == 1:
             put(islands, 0, phase, member[root(member, b)].island, b)
