@@ -134,9 +134,9 @@ def enter_joined(joined, k, n):
                 solver.rotor[i, f] = joined.rotor[joined.body[first + i], f]
         else:
             link.order, link.joint, link.parent, link.freedoms, link.has_child = i, -1, -1, 6, 0
-    for b in range(solver.workspace.shape[0]):
+    for b in range(min(n, solver.workspace.shape[0])):
         solver.workspace[b, 0] = math.nan
-    for b in range(solver.pose.shape[0]):
+    for b in range(min(n, solver.pose.shape[0])):
         solver.pose[b, 0] = math.nan
 
 
