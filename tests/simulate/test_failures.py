@@ -96,7 +96,8 @@ def test_a_motor_with_a_limit_presses_a_stack():
     np.testing.assert_allclose(s.velocity[-1], 0.0, atol=1e-9)
 
 
-def test_a_motor_that_closes_the_room_between_two_plays():
+@pytest.mark.parametrize("e", [(1.0, 0.0), (0.5, 0.0), (0.0, 0.0)])
+def test_a_motor_that_closes_the_room_between_two_plays(e):
     # theta_2 >= theta_1 - p and theta_2 <= q - theta_1 leave no room from theta_1 = (p + q)/2 on.
     scene, p, q, rate = carom.Scene(gravity=(0, 0, 0)), 0.1, 0.3, 2.0
     turns = []
@@ -110,11 +111,12 @@ def test_a_motor_that_closes_the_room_between_two_plays():
         )
     first, second = turns
     scene.add_constraint(carom.constraints.Driver(first, rate=rate))
-    scene.add_play({second: 1.0, first: -1.0}, -p, 1.0, restitution=1.0)
-    scene.add_play({second: 1.0, first: 1.0}, -1.0, q, restitution=0.0)
-    a = check_failure(Status.BLOCKED, scene, 1.0)
+    scene.add_play({second: 1.0, first: -1.0}, -p, 1.0, restitution=e[0])
+    scene.add_play({second: 1.0, first: 1.0}, -1.0, q, restitution=e[1])
+    a = carom.simulate(scene, 1.0, throw=False)
+    assert a.status is Status.BLOCKED
     closed = 0.5 * (p + q) / rate
-    assert closed - 1.0 / 200 <= a.t[-1] <= closed
+    assert closed - 1.0 / 200 <= a.t[-1] <= closed + 0.2 / 200  # a part of a time-stepping step
 
 
 def test_no_convergence():

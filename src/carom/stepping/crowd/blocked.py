@@ -32,9 +32,15 @@ LACK, IMPULSE, GRADIENT, DIRECTION, PRODUCT = o.RHS, o.BEST, o.F, o.STEP, o.CHAN
 
 
 @unit(where=has_relation_rows, otherwise=False)
-def blocked(system, k, h, crowd) -> bool:
-    """Return whether no motion keeps the k points of a piece of length h apart."""
+def blocked(system, k, h, slow, crowd, end) -> bool:
+    """Return whether no motion keeps the k points of a piece of length h apart.
+
+    It is asked where the contact problem leaves points that close faster than `slow`. The residual does not
+    tell: beside impulses that grow without bound it is round-off.
+    """
     work = crowd.problem
+    if not closes(system, k, h, slow, crowd, end):
+        return False
     lack, x = work.vector[LACK], work.vector[IMPULSE]
     g, p = work.vector[GRADIENT], work.vector[DIRECTION]
     if not write_lack(system, k, h, crowd):
@@ -52,6 +58,18 @@ def blocked(system, k, h, crowd) -> bool:
         if moves_nothing(system, crowd, k, left):
             return True
         descend(k, 1.0 / trace, work)
+    return False
+
+
+@kernel
+def closes(system, k, h, slow, crowd, end):
+    """Return whether a point closes at the end of the piece, by more than its gap allows."""
+    for i in range(k):
+        spot = crowd.closed[i]
+        if spot.motion == MOTION_POINT:
+            u = velocity_of(system, crowd.points[0][i], crowd, end)[0] + spot.drift[0]
+            if u + max(spot.gap, 0.0) / h < -slow:
+                return True
     return False
 
 

@@ -220,11 +220,11 @@ def collide(model, data, h, fall, patient, careful):
         if max(clock.event, clock.struck) + rows > data.records.event.shape[0]:
             return grow(work.step[0], r.FULL_EVENTS), k, 0.0, 0.0
         residual = find_impulses(model, data, k, h, fall, patient)
-        most = limits.RESIDUAL_LIMIT * greatest_speed(crowd, k) + limits.RESIDUAL_LIMIT * fall * h
-        if careful and residual > most:
+        speed = greatest_speed(crowd, k) + fall * h
+        if careful and residual > limits.RESIDUAL_LIMIT * speed:
             return TOO_LONG, k, residual, 0.0  # a shorter piece is a different problem
-        if residual > most and blocked(system, k, h, crowd):
-            return BLOCKED, k, residual, 0.0
+        if blocked(system, k, h, limits.SLOW_RESIDUAL * speed, crowd, work.trial):
+            return TOO_LONG if careful else BLOCKED, k, residual, 0.0
         if careful and misses_bounce(system, k, h, fall, crowd):
             return TOO_LONG, k, residual, 0.0
         driven, holds = impose(model, data, k, h)
