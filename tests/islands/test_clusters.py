@@ -198,17 +198,22 @@ def test_robots_that_have_parted_are_divided(monkeypatch):
     np.testing.assert_allclose(apart.position, one.position, atol=1e-9)
 
 
-def test_a_run_goes_on_after_robots_have_met(tmp_path):
-    """Bit for bit: a file says which clusters are one."""
-    path, scene = tmp_path / "run.h5", robots(3, 0.5)
+def assert_goes_on(scene, path, part):
+    """A run that is interrupted after this part goes on from its file, bit for bit as the whole run."""
     whole = carom.simulate(scene, **TIMES)
 
     def stop(done, total):
-        if done >= 0.5 * total:
+        if done >= part * total:
             raise KeyboardInterrupt
 
     carom.simulate(scene, **TIMES, save=path, progress=stop, throw=False)
     assert differences(whole, carom.resume(path)) == []
+
+
+def test_a_run_goes_on_after_robots_have_met(tmp_path):
+    """Bit for bit: a file says which clusters are one."""
+    path, scene = tmp_path / "run.h5", robots(3, 0.5)
+    assert_goes_on(scene, path, 0.5)
 
 
 def test_a_force_between_mechanisms_couples_them():
@@ -319,11 +324,4 @@ def test_what_a_function_of_time_drives_does_not_sleep():
 def test_a_run_goes_on_while_robots_sleep(tmp_path):
     """Bit for bit: a file says what rests."""
     path, scene = tmp_path / "run.h5", at_rest(falling)
-    whole = carom.simulate(scene, **TIMES)
-
-    def stop(done, total):
-        if done >= 0.3 * total:
-            raise KeyboardInterrupt
-
-    carom.simulate(scene, **TIMES, save=path, progress=stop, throw=False)
-    assert differences(whole, carom.resume(path)) == []
+    assert_goes_on(scene, path, 0.3)

@@ -89,15 +89,18 @@ def write_own(k, group):
     for i in range(k):
         for a in range(3):
             for b in range(a + 1):
-                one, other, total = (
-                    group.equations.arms[3 * i + a],
-                    group.equations.arms[3 * i + b],
-                    0.0,
-                )
-                for side in range(2 if one.body[1] >= 0 else 1):
-                    for j in range(6):
-                        total += one.row[side, j] * other.motion[side, j]
-                group.own[3 * i + a, b] = group.own[3 * i + b, a] = total
+                one, other = group.equations.arms[3 * i + a], group.equations.arms[3 * i + b]
+                group.own[3 * i + a, b] = group.own[3 * i + b, a] = rate_by_unit_force(one, other)
+
+
+@kernel
+def rate_by_unit_force(one, other):
+    """Return the rate of one row of a point by a unit force in another row of it."""
+    total = 0.0
+    for side in range(2 if one.body[1] >= 0 else 1):
+        for j in range(6):
+            total += one.row[side, j] * other.motion[side, j]
+    return total
 
 
 @kernel
