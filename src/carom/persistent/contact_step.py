@@ -138,7 +138,7 @@ def step_group(model, data, method, label, h):
     data.clocks[0].contact_steps += 1
     work.step[0].since += 5.0 * k * stages_within(method)
     if h * rate <= STIFF_SLIP and not (search.stiff == 1 and search.again == 1):
-        k, applied, friction = explicit_member(model, data, method, label, h, powers)
+        k, applied, friction = explicit_member(model, data, method, label, h, (k, powers))
         s = stages_within(method)
         closes, driven = write_end(model, data, label, k) if k > 0 else (False, 0.0)
         applied += driven

@@ -56,7 +56,7 @@ from carom.persistent.rows import (
     write_rows,
 )
 from carom.persistent.slip_law import renew_modes
-from carom.persistent.springs import bound_per_force, solve_springs
+from carom.persistent.springs import bound_per_force, moves_freely, solve_springs
 from carom.persistent.start import first_modes
 from carom.persistent.stops import locates, pass_stops
 from carom.persistent.thresholds import EQUATION_ERROR, LAST_CHANGE, POSE_SHARE, STAGE_CHANGE
@@ -65,15 +65,35 @@ FIXED_POINT = 25  # iterations of the pose of a stage
 
 
 @kernel
-def explicit_member(model, data, method, label, h, powers):
+def falls_as_one(k, count, data):
+    """Return whether free bodies with k points fall as one, so that no stage has a force.
+
+    They touch each other alone, have one velocity, do not turn, and no point accelerates at the start.
+    """
+    state, group = data.state, data.group
+    first = state[group.bodies.member[0]].v
+    for m in range(count):
+        v, w = state[group.bodies.member[m]].v, state[group.bodies.member[m]].w
+        for r in range(3):
+            if v[r] != first[r] or w[r] != 0.0:
+                return False
+    for i in range(k):
+        if group.points[0][i].b < 0:
+            return False
+    return moves_freely(k, group)
+
+
+@kernel
+def explicit_member(model, data, method, label, h, first):
     """Make the stages of the method of the run; return the number of points at its last one, 0 if modes end.
 
-    `powers` are those of loads and of friction in stage 0. Return their work too.
+    `first` has the number of points in stage 0, and the powers of loads and of friction. Return their work too.
     """
     start, end, group, work = data.state, data.work.trial, data.group, data.work
-    (count, loaded), moment, k = bodies_of(model, data, label), work.moment[0], 0
+    (count, loaded), moment, (k, powers) = bodies_of(model, data, label), work.moment[0], first
     applied, friction = h * method.b[0] * powers[0], h * method.b[0] * powers[1]
     least = PASSED if locates(model, data) else SAME
+    falls = not loaded and falls_as_one(k, count, data)
     for s in range(1, stages_within(method)):
         for m in range(count):
             b = group.bodies.member[m]
@@ -81,6 +101,8 @@ def explicit_member(model, data, method, label, h, powers):
             note_velocity(work.stage[b], work.stages[s, b])
         moment.time = moment.start + h * node(method.A[s, :s])
         power = accelerate_freely(model, data, loaded, count, s)
+        if falls:
+            continue
         k = write_rows(model, data, label, s)
         if set_modes(model.system, data.active, k, group) < least or not solve_springs(k, group):
             return 0, 0.0, 0.0

@@ -171,6 +171,8 @@ def on_face(contact, active, i, n, state):
                 return True
             if find_end and distance > far:
                 x, y, z, far = a, b, c, distance
+        if far == level:  # no other point is there
+            return False
     return False
 
 
@@ -318,18 +320,21 @@ def in_patch(system, p, q):
 def weigh_patch(system, first, k, group):
     """Write the weights of the patch of a point: walk round its hull from the outermost point, side by side."""
     points, closed, perimeter = group.points[0], group.closed, 0.0
-    size, start = system.bodies[points[first].a].extent, first
+    size, start, last = system.bodies[points[first].a].extent, first, first
     for j in range(first, k):
         if closed[j].motion == MOTION_POINT and closed[j].weight < 0.0:
             if in_patch(system, points[first], points[j]):
-                closed[j].weight, closed[j].patch = 0.0, first
+                closed[j].weight, closed[j].patch, last = 0.0, first, j
                 x, y = in_plane(points[first], points[j])
                 a, b = in_plane(points[first], points[start])
                 if x < a - PLACE_ERROR * size or (x < a + PLACE_ERROR * size and y < b):
                     start = j
+    if last == first:
+        closed[first].weight = 1.0
+        return
     here = start
     for _ in range(k):
-        there, side = next_corner(size, first, here, k, group)
+        there, side = next_corner(size, first, here, last + 1, group)
         if there < 0:
             break
         closed[here].weight += 0.5 * side
@@ -338,7 +343,7 @@ def weigh_patch(system, first, k, group):
         here = there
         if here == start:
             break
-    for j in range(first, k):
+    for j in range(first, last + 1):
         if closed[j].patch == first:
             closed[j].weight = closed[j].weight / perimeter if perimeter > 0.0 else 0.0
     if not perimeter > 0.0:
