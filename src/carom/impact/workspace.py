@@ -120,7 +120,8 @@ class Group(NamedTuple):
     """
 
     closed: np.recarray  # (K,) CLOSED_POINT
-    #: (2,) those that `contact.closed_points` has listed; those that found no room in a step
+    #: (4,) those that `contact.closed_points` has listed; those that found no room in a step; and between which
+    #: numbers the active points of the group are (`persistent.points`)
     count: np.ndarray
     points: np.recarray  # (2, K) POINT: of the present state; of the end of a step
     own: np.ndarray  # (3K, 3) the part of W in each row that is of its own point
@@ -184,7 +185,7 @@ def new_group(system: System, more: bool = False) -> Group:
         base=table(STATE, n), free=table(STATE, n),
     )  # fmt: skip
     return Group(
-        closed=table(CLOSED_POINT, k), count=np.zeros(2, dtype=np.int64), points=table(POINT, 2, k),
+        closed=table(CLOSED_POINT, k), count=np.zeros(4, dtype=np.int64), points=table(POINT, 2, k),
         own=np.zeros((3 * k, 3)), u=u, p=p, a=a, back=back, idle=np.zeros((2, dense, dense)), loads=loads,
         vectors=np.zeros(9), secant=secant, bodies=bodies,
         equations=new_equations(k, n), problem=problem, cone=new_contact_work(dense),

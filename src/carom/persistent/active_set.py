@@ -161,7 +161,7 @@ def refresh_pairs(system, controls, data) -> bool:
                 own_point(contact, touch, state, active_point.point)
                 there = True
         if there:
-            if is_of_moving(contact) and is_first(active, i):
+            if is_of_moving(contact) and is_first(active, i, 0):
                 changed = add_riding(system, controls, data, i) or changed
             i += 1
             continue
@@ -182,9 +182,9 @@ def refresh_pairs(system, controls, data) -> bool:
 
 
 @kernel
-def is_first(active, i):
-    """Return whether an active point is the first of its contact."""
-    for j in range(i):
+def is_first(active, i, begin):
+    """Return whether an active point is the first of its contact; no other is before `begin`."""
+    for j in range(begin, i):
         if active.points[j].contact == active.points[i].contact:
             return False
     return True

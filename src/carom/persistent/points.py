@@ -47,18 +47,34 @@ from carom.persistent.thresholds import (
     STICK_OF_MASSES,
 )
 
+#: places in `Group.count`: of the first active point of the group, and behind the last
+FIRST_OF_GROUP, END_OF_GROUP = 2, 3
+
+
+@kernel
+def note_range(active, label, group, work):
+    """Write between which numbers the active points of a group are.
+
+    Many groups share an island, and each of them finds its points several times in a step.
+    """
+    first, end = active.count[0], 0
+    for i in range(active.count[0]):
+        if work.body[active.points[i].body].label == label:
+            first, end = min(first, i), i + 1
+    group.count[FIRST_OF_GROUP], group.count[END_OF_GROUP] = first, end
+
 
 @kernel
 def find_points(system, data, label):
     """List the points of all pairs of a group in `work.stage`, then other friction; return the number."""
     active, group, work, k = data.active, data.group, data.work, 0
-    for i in range(active.count[0]):
+    for i in range(group.count[FIRST_OF_GROUP], group.count[END_OF_GROUP]):
         active_point = active.points[i]
         if work.body[active_point.body].label != label:
             continue
         if active_point.found == 0:
             k = add_known(system, data, i, k)
-        elif is_first(active, i):
+        elif is_first(active, i, group.count[FIRST_OF_GROUP]):
             k = add_pair(system, data, i, k)
     k = add_turning(system, active, k, group)
     k = add_frictions(system, label, work.stage, k, group, work)
@@ -88,10 +104,10 @@ def add_pair(system, data, i, k) -> int:
     If no points belong together, those of the active features are found one by one. Return the new count.
     """
     active, state, work = data.active, data.work.stage, data.work
-    c = active.points[i].contact
+    c, end = active.points[i].contact, data.group.count[END_OF_GROUP]
     contact = system.contacts[c]
     if not forms_faces(contact):
-        for j in range(i, active.count[0]):
+        for j in range(i, end):
             if active.points[j].contact == c:
                 one = active.points[j]
                 t = find_active_touch(system, contact, one.feature, one.point, state, work)
@@ -103,8 +119,8 @@ def add_pair(system, data, i, k) -> int:
     list_touches(system, contact, state, active_reach(system, contact), work)
     m = nearest_touch(work).normal
     n = (m[0], m[1], m[2])
-    if not on_face(contact, active, i, n, state):
-        for j in range(i, active.count[0]):
+    if not on_face(contact, data, i, n):
+        for j in range(i, end):
             if active.points[j].contact == c:
                 k = add_nearest(system, data, j, k)
         return k
@@ -149,15 +165,16 @@ def add_riding(system, data, c, i, k, n):
 
 
 @kernel
-def on_face(contact, active, i, n, state):
+def on_face(contact, data, i, n):
     """Return whether active points of two bodies span a part of the plane through point i with the normal n.
 
     Points on a line, or in other planes, do not tell whether a corner at some distance is closed.
     """
-    q, p, level = state[contact.body].Q, active.points[i].point, NORMAL_ERROR * smaller(contact)
+    active, group, q = data.active, data.group, data.work.stage[contact.body].Q
+    p, level = active.points[i].point, NORMAL_ERROR * smaller(contact)
     m, x, y, z, far = rotate_back(q, n), 0.0, 0.0, 0.0, level
     for find_end in (True, False):
-        for j in range(active.count[0]):
+        for j in range(group.count[FIRST_OF_GROUP], group.count[END_OF_GROUP]):
             other = active.points[j]
             if other.body != contact.body or other.other != contact.other:
                 continue

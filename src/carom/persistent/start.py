@@ -15,9 +15,10 @@ from carom.friction.layout import SLIDING
 from carom.model.actions import MODE_SLIP, MODE_STICK
 from carom.model.workspace import CONSTANT, MOTION_JOINT, MOTION_POINT
 from carom.persistent.coulomb_stage import solve_forces
-from carom.persistent.finish import gains, within_cones
+from carom.persistent.finish import copy_to_stage, gains, within_cones
 from carom.persistent.joint_rows import greatest_load, radius_of, still_speed
 from carom.persistent.memory import is_torque, memory_of, store_slip
+from carom.persistent.points import note_range
 from carom.persistent.rows import (
     accelerate_freely,
     bodies_of,
@@ -48,9 +49,11 @@ def accelerate_start(model, data, label):
     Return the number of bodies of the group, whether they are joined or loaded, and the power of loads.
     """
     start, group, work = data.state, data.group, data.work
-    for b in range(start.shape[0]):
-        copy_state(start[b], work.stage[b])
     count, loaded = bodies_of(model, data, label)
+    note_range(data.active, label, group, work)
+    for b in range(start.shape[0] if loaded else 0):
+        copy_state(start[b], work.stage[b])
+    copy_to_stage(0 if loaded else count, start, group, work)
     for m in range(count):
         note_velocity(work.stage[group.bodies.member[m]], work.stages[0, group.bodies.member[m]])
     work.moment[0].time = work.moment[0].start
