@@ -8,7 +8,8 @@ from campaigns import switches
 from carom import GROUND, joints
 from carom.run import Run
 from carom.watch import limits as within
-from carom.watch.switching import Loads
+from carom.watch.conditions import Observed
+from carom.watch.loads import Loads
 from carom.watch.watched import Watched
 
 G = 9.81
@@ -56,6 +57,26 @@ def loop(**breaks):
     return scene
 
 
+def rubbing(make, by_load):
+    """The same scene with dry friction in all joints, by load or constant."""
+
+    def made(**breaks):
+        scene = make(**breaks)
+        for k, joint in enumerate(list(scene.joints)):
+            law = {"mu": 0.2 + 0.1 * k, "radius": 0.05} if by_load else {"bound": 0.5 + 0.5 * k}
+            scene.add_force(carom.forces.JointFriction(joint.name, **law))
+        return scene
+
+    return made
+
+
+RUBBING = {
+    f"{make.__name__}-{'load' if by_load else 'constant'}": rubbing(make, by_load)
+    for make in (chain, on_a_floor, loop)
+    for by_load in (False, True)
+}
+
+
 def both(scene, monkeypatch, duration=1.0, **how):
     """Return a run whose loads are looked at in the loop, and one in which they are from Python."""
     ours = carom.simulate(scene, duration, **how)
@@ -82,6 +103,61 @@ def test_the_loads_are_those_found_from_python(make):
         most = max(np.linalg.norm(force) / 1e6, np.linalg.norm(torque) / 1e5) - 1.0
         assert watched.values[0] == pytest.approx(most, abs=1e-15)
         assert watched.values[0] > -1.0
+
+
+@pytest.mark.parametrize("make", RUBBING.values(), ids=RUBBING)
+def test_the_loads_beside_dry_friction_are_those_of_the_step(make):
+    """The loop has the bits of what locates a break; the motion agrees with them by Newton's law."""
+    limits = {"force": 1e6, "torque": 1e5}
+    watched = Watched(Run(make(breaks_at=limits), carom.Run(make(), step=1e-3)._run.how))
+    own, run = watched.within, watched.run
+    (condition,) = watched.conditions
+    for _ in range(20):
+        before = run.steps_done
+        assert own.go_on(before + 20) is not None
+        assert run.steps_done == before + 20
+        force, torque = Loads(run).of(condition.switch.parts[0], watched.look())
+        most = max(np.linalg.norm(force) / 1e6, np.linalg.norm(torque) / 1e5) - 1.0
+        assert watched.values[0] == pytest.approx(most, abs=1e-13)
+
+
+@pytest.mark.parametrize("by_load", [False, True])
+def test_the_load_beside_dry_friction_is_that_of_newtons_law(by_load):
+    """The force through a hinge is the sum of m (a - g) of the balls beyond, by central differences."""
+    make = rubbing(chain, by_load)
+    free = carom.simulate(make(), 0.5, step=1e-4)
+    run, mass = carom.Run(make(), step=1e-4), 1.0 + np.arange(4)
+    for k in (200, 1000, 2000, 4000):
+        run.advance(free.t[k] - run.time)
+        a = (free.velocity[k + 1] - free.velocity[k - 1]) / (free.t[k + 1] - free.t[k - 1])
+        force = (mass[:, None] * (a + [0, 0, G]))[1:].sum(axis=0)
+        look = Observed(run._run, {}, 0, at_end=True)
+        found, _ = Loads(run._run).of(run._run.scene["pin1"], look)
+        np.testing.assert_allclose(-found, force, rtol=0, atol=1e-5 * np.linalg.norm(force))
+
+
+def test_beside_events_of_python_the_loop_looks_at_the_loads(monkeypatch):
+    """The same break, and no load is found from Python before the step of the break."""
+
+    def never(t, state):
+        return 1.0
+
+    make = rubbing(chain, True)
+    free = carom.simulate(make(), 1.0, step=5e-3)
+    limits = {"force": 0.9 * np.nanmax(np.linalg.norm(free["pin1"].force, axis=1)[1:])}
+    alone = carom.simulate(make(breaks_at=limits), 1.0, step=5e-3)
+    times, solve = [], Loads.solve
+
+    def noted(self, run):
+        times.append(run.reached)
+        solve(self, run)
+
+    monkeypatch.setattr(Loads, "solve", noted)
+    beside = carom.simulate(make(breaks_at=limits), 1.0, step=5e-3, events=[never])
+    assert len(beside.switches) == len(alone.switches) == 1
+    assert beside.switches.time[0] == pytest.approx(alone.switches.time[0], rel=1e-12)
+    np.testing.assert_allclose(beside.position, alone.position, rtol=0, atol=1e-11)
+    assert min(times) > beside.switches.time[0] - 2 * 5e-3
 
 
 HOW = {"tolerances": {}, "step": {"step": 5e-3}, "few": {"save_every": 10, "step": 2e-3}}

@@ -6,6 +6,7 @@ import numpy as np
 
 from carom._compiled.decorators import entry, kernel
 from carom._compiled.units import unit
+from carom.dynamics import thresholds as limits
 from carom.dynamics.contact_impulse import clear_wrenches
 from carom.dynamics.element_operations import (
     acceleration_bias,
@@ -21,7 +22,14 @@ from carom.dynamics.elements.relation import prescribed
 from carom.dynamics.elements.stiff import add_stiff
 from carom.dynamics.forces import applied_wrenches
 from carom.dynamics.light_bodies import factor_geometry, geometric_motion
-from carom.dynamics.loops import add_reactions, factor, free_motion, substitute, subtract_rows
+from carom.dynamics.loops import (
+    add_reactions,
+    dropped_rows,
+    factor,
+    free_motion,
+    substitute,
+    subtract_rows,
+)
 from carom.dynamics.solve import solve
 from carom.dynamics.tree import joint_wrenches
 from carom.kinematics.combination import is_combination
@@ -31,18 +39,22 @@ from carom.kinematics.curve import is_on_curve, seek_feet, seek_foot
 from carom.model.arrays import FOREST, LOOPS, RELATION
 from carom.model.parts_of_system import has_turns
 
+LEAST_NORM_PASSES = 100  # at most
+
 
 @kernel
 def least_norm(system, augment, state, work):
-    """Write the reactions of least norm, by the augmented Lagrangian, started from zero.
+    """Write the reactions of least norm, by passes from zero, with S = A M^-1 A^T of the rows.
 
-    Each pass adds (A M^-1 A^T + eps)^-1 times the residual of A a = target. The sum stays in the range of A
-    M^-1 A^T and so converges to the solution of least norm, with rows weighted by eps. If masses differ much,
-    the same is done with A D^-1 A^T (`carom.dynamics.light_bodies`) for A^T lam = A^T mu, with the multipliers
-    mu that were found.
+    S lam = r, r = target - A M^-1 wrench. Each pass adds P S P times the residual, P = (S + eps)^-1, which
+    leaves 1 - (s/(s + eps))^2 of an error along an eigenvector of S with the eigenvalue s. The sum stays in the
+    range of P S and so converges to the solution of least norm, with rows weighted by eps; what round-off has
+    put into a residual that no multipliers can take away is not seen. Heavy bodies on long arms have small
+    eigenvalues, and eps is less. If masses differ much, the same is done with A D^-1 A^T
+    (`carom.dynamics.light_bodies`) for A^T lam = A^T mu, with the multipliers mu that were found.
     """
-    spread = system.solver.scaled.shape[0] > 0
-    if spread:
+    augment = min(augment, limits.LEAST_NORM_WEIGHT)
+    if system.solver.scaled.shape[0] > 0:
         push_multipliers(system, work)
         factor_geometry(system, state, augment, work)
     else:
@@ -50,30 +62,61 @@ def least_norm(system, augment, state, work):
     for j in range(system.joints.shape[0]):
         for k in range(6):
             work.joint[j].multiplier[k] = 0.0
-    for _ in range(8):
-        if spread:
-            geometric_motion(system, work)
-        else:
-            free_motion(system, work)
-        swap(system, work)
-        add_reactions(system, work)
-        for j in range(system.joints.shape[0]):
-            rhs = system.solver.rows[j].rhs
-            for k in range(6):
-                rhs[k] = 0.0
-            if not spread:
-                row_target(system, j, state, work.joint[j].bias, rhs)
-                for r in range(system.joints[j].rows):
-                    yields = system.solver.rows[j].compliance[r]
-                    rhs[r] -= yields * work.joint[j].multiplier[r]
-        subtract_rows(system, work)
+    for _ in range(LEAST_NORM_PASSES):
+        write_residual(system, state, work)
         substitute(system)
+        respond(system, work)
+        substitute(system)
+        changes, total = 0.0, 0.0
         for j in range(system.joints.shape[0]):
-            for k in range(6):
-                work.joint[j].multiplier[k] += system.solver.rows[j].rhs[k]
+            multiplier, rhs = work.joint[j].multiplier, system.solver.rows[j].rhs
+            for r in range(system.joints[j].rows):
+                multiplier[r] -= rhs[r]
+                changes += system.solver.rows[j].weight[r] * rhs[r] * rhs[r]
+                total += system.solver.rows[j].weight[r] * multiplier[r] * multiplier[r]
+        if not changes > limits.REACTION_ERROR * limits.REACTION_ERROR * total:
+            break
     for j in range(system.joints.shape[0]):
         record = work.joint[j]
         write_reaction(system.joints[j], state, record.multiplier, record.reaction)
+
+
+@kernel
+def write_residual(system, state, work):
+    """Write target - A M^-1 (wrench + A^T multipliers) into the right-hand sides; compliances yield."""
+    spread = system.solver.scaled.shape[0] > 0
+    if spread:
+        geometric_motion(system, work)
+    else:
+        free_motion(system, work)
+    for j in range(system.joints.shape[0]):
+        for k in range(6):
+            system.solver.rows[j].rhs[k] = work.joint[j].multiplier[k]
+    add_reactions(system, work)
+    for j in range(system.joints.shape[0]):
+        record, rhs = work.joint[j], system.solver.rows[j].rhs
+        for k in range(6):
+            rhs[k] = 0.0
+        if not spread:
+            row_target(system, j, state, record.bias, rhs)
+            for r in range(system.joints[j].rows):
+                rhs[r] -= system.solver.rows[j].compliance[r] * record.multiplier[r]
+    subtract_rows(system, work)
+
+
+@kernel
+def respond(system, work):
+    """Turn the right-hand sides x into -S x."""
+    spread = system.solver.scaled.shape[0] > 0
+    for b in range(system.bodies.shape[0]):
+        for k in range(6):
+            work.body[b].motion[k] = 0.0
+    add_reactions(system, work)
+    for j in range(system.joints.shape[0]):
+        rhs = system.solver.rows[j].rhs
+        for r in range(system.joints[j].rows):
+            rhs[r] *= 0.0 if spread else -system.solver.rows[j].compliance[r]
+    subtract_rows(system, work)
 
 
 @kernel
@@ -90,22 +133,15 @@ def push_multipliers(system, work):
 
 
 @kernel
-def swap(system, work):
-    """Copy the multipliers to the right-hand sides of the solver."""
-    for j in range(system.joints.shape[0]):
-        for k in range(6):
-            system.solver.rows[j].rhs[k] = work.joint[j].multiplier[k]
-
-
-@kernel
 def share(system, augment, state, work):
     """Write the wrenches of all joints; if they are not unique, those of least norm.
 
-    Wrenches and biases must be written before.
+    Wrenches and biases must be written before, and the motion solved for: without dependent rows its wrenches
+    are the only ones.
     """
     if system.solver.kind == FOREST:
         joint_wrenches(system, work)
-    elif system.solver.kind == LOOPS:
+    elif system.solver.kind == LOOPS and dropped_rows(system, limits.RANK) > 0:
         least_norm(system, augment, state, work)
 
 

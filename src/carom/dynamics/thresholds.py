@@ -34,3 +34,5 @@ SLOWEST = 1e-6  #: size of a body in a step: least speed by which the convergenc
 THIRD_ORDER = 0.01  #: square of the estimate of order 3: its weight beside that of order 5 (`dop853`)
 #: rad^2: squared angle of a mount above which its moment has the closed form: both are right to 2e-11
 SERIES_TURN = 1e-4
+LEAST_NORM_WEIGHT = 1e-6  #: diagonal of a row: greatest weight of the norm that is least for reactions
+REACTION_ERROR = 1e-13  #: reactions of least norm: what the last pass changes

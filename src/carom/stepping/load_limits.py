@@ -4,6 +4,9 @@ A joint breaks where its force, its torque, or the impulse that it takes in an i
 that has such joints goes on as any other, and the compiled loop is left after a step at whose end a load is
 beyond its limit, in which it may have been (the parabola through three ends of steps is), or in which an
 impact may have broken a joint. What follows is that of `carom.watch`, which takes this step once more.
+
+Dry friction in joints loads the bodies with the force that the step has found at its end, slip or stick. A
+time-stepping step knows no force at its end, and leaves the loop.
 """
 
 from __future__ import annotations
@@ -14,13 +17,16 @@ from typing import NamedTuple
 import numpy as np
 
 from carom._compiled.decorators import by_reference, entry, kernel
+from carom._compiled.units import unit
 from carom.dynamics.reactions import add_touch, load_bodies, solve_reactions
 from carom.geometry.rotation import norm
 from carom.geometry.vectors import cross, plus
+from carom.kinematics.combination import push
 from carom.kinematics.curve import seek_feet
 from carom.kinematics.joints import anchor_gap
 from carom.model.arrays import System
 from carom.model.data import Data
+from carom.model.parts_of_system import has_relations
 from carom.model.records import Records
 from carom.model.workspace import Work
 from carom.stepping.record import room_of_touches, save_contacts
@@ -42,6 +48,7 @@ LIMIT_CLOCK = [
     ("beyond", "i8"),  # whether the loop was left because a limit may have been passed
     ("known", "i8"),  # how many of the last values are known
     ("struck", "i8"),  # impacts before the step
+    ("whole", "i8"),  # time-stepping steps before the step
     ("augment", "f8"),  # `Options.augmentation`
     ("time", "f8", 3),  # ends of the last three steps
 ]
@@ -94,10 +101,19 @@ def look_at_loads(model, data, limits):
     return found
 
 
+@entry
+def find_loads(model, data, limits):
+    """Write the reactions at the present state, for Python."""
+    find_reactions(model, data, limits)
+
+
 @kernel
 def find_reactions(model, data, limits):
-    """Write the reactions at the present state; return whether there was room for the forces at contacts."""
-    touch, own = limits.records.touch, limits.clocks[0]
+    """Write the reactions at the present state; return whether the forces beside them are known."""
+    touch, own, place = limits.records.touch, limits.clocks[0], limits.place[0]
+    whole, place.whole = place.whole, data.clocks[0].whole
+    if whole != place.whole and model.system.relations.frictions.shape[0] > 0:
+        return False
     own.now, own.touched = data.clocks[0].now, 0
     if room_of_touches(model.system, data.active.count[0]) > touch.shape[0]:
         return False
@@ -120,8 +136,19 @@ def find_reactions(model, data, limits):
     load_bodies(system, data.state, work)
     for h in range(own.touched):
         add_touch(touch[h], work)
-    solve_reactions(system, limits.place[0].augment, data.state, work)
+    add_friction(model.system, data.state, work)
+    solve_reactions(system, place.augment, data.state, work)
     return True
+
+
+@unit(where=has_relations)
+def add_friction(system, state, work):
+    """Add the wrenches of dry friction in joints by its forces at the end of the step."""
+    relations = system.relations
+    for i in range(relations.frictions.shape[0]):
+        one = relations.frictions[i]
+        force = one.arm * relations.memory.frictions[i].force[1]
+        push(system, relations.coordinates[one.coordinate], state, force, work)
 
 
 @kernel

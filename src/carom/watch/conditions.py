@@ -25,8 +25,9 @@ ALLOWED = (
 class Observed:
     """A run between two steps, or at the end of a trial; its state is made when it is first asked for."""
 
-    def __init__(self, run: Any, known: dict, struck: int):
+    def __init__(self, run: Any, known: dict, struck: int, at_end: bool):
         self.run, self.known, self.struck = run, known, struck  # impacts before the step
+        self.at_end = at_end  # whether it stands at the end of a step, which has found its forces
         self.t = run.reached
 
     @cached_property

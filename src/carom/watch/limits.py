@@ -2,7 +2,8 @@
 
 The compiled loop looks at the loads (`carom.stepping.load_limits`) and ends after a step in which a limit may
 have been passed. The run is then put back to where these steps began and goes on to the start of that step,
-with the same bits; the step itself is one of `carom.watch.watched`.
+with the same bits; the step itself is one of `carom.watch.watched`. Beside conditions that are looked at from
+Python after each step, such as functions of the user, the loop looks at the loads of this one step.
 """
 
 from __future__ import annotations
@@ -12,15 +13,11 @@ from typing import Any
 
 import numpy as np
 
-from carom._compiled.record_arrays import table
-from carom.model.compile import compiled_once
-from carom.model.forces import settable
-from carom.model.records import TOUCH, new_clock, new_work, one_row
-from carom.results.dry_friction import dry_of
 from carom.scene.joints import Joint
 from carom.status import Status
-from carom.stepping.load_limits import LIMIT_CLOCK, LOAD_LIMIT, LoadLimits
+from carom.stepping.load_limits import LoadLimits
 from carom.watch.conditions import Condition
+from carom.watch.loads import arrays_of_loads, set_forces
 from carom.watch.switching import changes
 
 #: steps that are taken at once, at most, and are taken again where one of them is to be looked at
@@ -37,6 +34,7 @@ class Within:
         self.able = bool(self.breaks) and all(c.breaks or t for c, t in zip(conditions, timed))
         self.limits: LoadLimits | None = None
         self.own: list[int] = []  # conditions of the limits
+        self.known: dict[int, float] = {}  # loads at the end of the last step, below their limits
         self.compiled, self.view, self.reading = None, None, None
 
     def go_on(self, until: int) -> Status | None:
@@ -68,6 +66,24 @@ class Within:
         self.at_once = max(1, self.at_once // 4)
         return None if status is Status.SUCCESS else status
 
+    def take_step(self) -> Status:
+        """Take one step; know the loads at its end if none may have passed its limit within it."""
+        run = self.watched.run
+        self.known = {}
+        # where nothing else is watched, the loop has asked for this step to be looked at from Python
+        if self.able or not self.breaks or not (self.set() and self.own):
+            return run.go_on(run.steps_done + 1)
+        limits = self.limits
+        assert limits is not None
+        run.limits = limits
+        try:
+            status = run.go_on(run.steps_done + 1)
+        finally:
+            run.limits = None
+        if status is Status.SUCCESS and limits.place["beyond"][0] == 0:
+            self.known = {i: float(row.value[2]) for row, i in zip(limits.rows, self.own)}
+        return status
+
     def set(self) -> bool:
         """Write the limits, and what is known of the loads; return whether the loop can look at them."""
         watched, run = self.watched, self.watched.run
@@ -76,13 +92,10 @@ class Within:
         if self.limits is None:
             return False
         rows, place = self.limits.rows, self.limits.place
-        for there, now in zip(
-            settable(self.limits.system.forces), settable(run.compiled.system.forces)
-        ):
-            there[:] = now
+        set_forces(self.limits, run)
         last = watched.last
         place["known"], place["beyond"] = 1 if last is None else 2, 0
-        place["struck"] = run.clock["struck"]
+        place["struck"], place["whole"] = run.clock["struck"], run.clock["whole"]
         place["time"][0] = math.nan, math.nan if last is None else last[0], run.reached
         for row, i in zip(rows, self.own):
             row.value = math.nan, math.nan if last is None else last[1][i], watched.values[i]
@@ -94,27 +107,17 @@ class Within:
         conditions = self.watched.conditions
         self.own = [i for i in self.breaks if changes(run, conditions[i].switch)]
         parts = [conditions[i].switch.parts[0] for i in self.own]
-        view = run.stands.view(run.scene)
-        if any(isinstance(part, Joint) for part in parts) and dry_of(view):
-            return  # their reactions are solved for together with the friction
-        self.reading = compiled = compiled_once(view, run.options, *run.ways)
-        system, rows = compiled.system, table(LOAD_LIMIT, len(parts))
-        for row, part, i in zip(rows, parts, self.own):
-            limits = conditions[i].switch.limits
+        self.reading, limits = arrays_of_loads(run, len(parts))
+        for row, part, i in zip(limits.rows, parts, self.own):
+            given = conditions[i].switch.limits
             row.force, row.torque, row.impulse = (
-                limits.get(name, math.inf) for name in ("force", "torque", "impulse")
+                given.get(name, math.inf) for name in ("force", "torque", "impulse")
             )
             joint = isinstance(part, Joint)
             row.element = part.index if joint else -1
             row.contact = -1 if joint else len(run.pairs.body) + part.index
-            row.flipped = int(joint and part.index in np.flatnonzero(compiled.flipped))
-        place, records = table(LIMIT_CLOCK, 1), one_row(len(system.bodies), 0)
-        place["augment"] = run.options.augmentation
-        # a row for each active point, and for each term of a coordinate (`stepping.record.room_of_touches`)
-        room = len(run.active.points) + 2 * len(run.compiled.system.relations.terms)
-        records = records._replace(touch=table(TOUCH, room))
-        work = new_work(system, run.method.b.size)
-        self.limits = LoadLimits(rows, place, system, work, new_clock(), records)
+            row.flipped = int(joint and part.index in np.flatnonzero(self.reading.flipped))
+        self.limits = limits
 
     def note(self, limits: LoadLimits, k: int) -> None:
         """Note the loads at the end of step `k` of the last three, and at the one before."""

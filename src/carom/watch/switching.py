@@ -11,18 +11,12 @@ from typing import Any
 
 import numpy as np
 
-from carom._compiled.record_arrays import table
 from carom.contact.depth import write_least_gaps
 from carom.dynamics.project import project_start
-from carom.dynamics.reactions import reactions, start_errors
-from carom.model.arrays import STATE
-from carom.model.compile import compiled_once
-from carom.model.forces import settable
+from carom.dynamics.reactions import start_errors
 from carom.model.placement import pose_of_child
-from carom.model.records import OPENS, SERIES, TURN, longer, new_work
+from carom.model.records import OPENS, longer
 from carom.model.switched import SWITCHED
-from carom.results.assemble import on_children
-from carom.results.dry_friction import dry_of
 from carom.results.instant import touches
 from carom.results.joint_impulses import impulses_of
 from carom.results.names import contact_names
@@ -32,6 +26,7 @@ from carom.scene.stops import Stop
 from carom.scene.switch import Switch
 from carom.scene.switches import check_on, is_off
 from carom.watch.conditions import Condition, Observed, condition_of
+from carom.watch.loads import Loads
 
 
 def switches_of(scene) -> list[Condition]:
@@ -90,46 +85,6 @@ class _Breaks:
             return None
         times, sizes = impulses_of(run, look.struck, self.part)
         return next((t for t, size in zip(times, sizes) if size > limit), None)
-
-
-class Loads:
-    """Reactions of joints in a run that stands between two steps, in arrays of their own."""
-
-    def __init__(self, run):
-        view = run.stands.view(run.scene)
-        self.solves = bool(dry_of(view))  # then they follow from those of a state
-        self.compiled = compiled_once(view, run.options, *run.ways)
-        system, self.turns = self.compiled.system, table(TURN, 2, 0)
-        self.states, self.series = table(STATE, 2, len(run.now)), table(SERIES, 2)
-        self.out = np.zeros((2, system.joints.size, 6))
-        self.work = new_work(system, run.method.b.size)
-        self.time, self.found = np.nan, np.zeros((1, system.joints.size, 6))
-
-    def of(self, joint: Joint, look: Observed) -> tuple[np.ndarray, np.ndarray]:
-        """Return force and torque of a joint on its child."""
-        if self.solves:
-            reaction = look.state.joint_reactions[joint.index]
-        else:
-            if look.t != self.time:
-                self.solve(look.run)
-                self.time = look.t
-            reaction = self.found[0, joint.index]
-        return reaction[:3], reaction[3:]
-
-    def solve(self, run) -> None:
-        """Find all reactions as the run stands."""
-        system, here = self.compiled.system, run.compiled.system
-        touch = touches(run)
-        touch["saved"], self.states[:], self.series["t"] = 1, run.now, run.reached
-        memory = system.relations.memory.coordinates
-        memory["reference"] = here.relations.memory.coordinates["reference"]
-        for there, now in zip(settable(system.forces), settable(here.forces)):
-            there[:] = now
-        saved = run.records._replace(
-            series=self.series, state=self.states, turn=self.turns, touch=touch
-        )
-        reactions(system, run.options.augmentation, saved, (1, 2), self.work, self.out)
-        self.found = on_children(self.compiled, self.states[1:], self.out[1:])
 
 
 def switch(run, part, on: bool, number: int = -1) -> bool:

@@ -94,7 +94,7 @@ class Watched:
                     continue
             self.began, self.struck = run.reached, int(run.clock["struck"][0])
             self.before.take()
-            status = run.go_on(run.steps_done + 1)
+            status = self.within.take_step()
             if status is Status.SUCCESS:
                 status = self.check()
         return status
@@ -116,7 +116,7 @@ class Watched:
 
     def evaluated(self) -> list[float]:
         """Return the values of all conditions now; what is to rest is yet to."""
-        look = self.look()
+        look = self.look(at_end=False)
         self.asked, self.at = "", look.t
         return [
             1.0 if c.rest and c.switch is None else self.value(i, look)
@@ -143,9 +143,9 @@ class Watched:
             state_events=own, _stopped_by=self.stopped_by,
         )  # fmt: skip
 
-    def look(self) -> Observed:
-        """Return the run as conditions see it."""
-        look = Observed(self.run, self.joints, self.struck)
+    def look(self, at_end: bool = True) -> Observed:
+        """Return the run as conditions see it, at the end of a step or before any after a change."""
+        look = Observed(self.run, self.joints, self.struck, at_end)
         if self.events:
             _ = (
                 look.state
@@ -180,8 +180,9 @@ class Watched:
 
     def find(self) -> Status:
         """Find the events of the last step, and stop at the first that ends the run."""
-        look, step = self.look(), self.run.steps_done
-        old, self.values = self.values, [self.value(i, look) for i in range(len(self.conditions))]
+        look, step, known = self.look(), self.run.steps_done, self.within.known
+        now = [known[i] if i in known else self.value(i, look) for i in range(len(self.conditions))]
+        old, self.values = self.values, now
         ends = [look] * len(old)
         self.end_at_peaks(old, ends, step)
         changed = [i for i, c in enumerate(self.conditions) if crosses(c, old[i], self.values[i])]
