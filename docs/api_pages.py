@@ -22,6 +22,7 @@ CALLED = {
     "Spring", "Force", "Torque", "Bushing", "JointSpring", "JointForce", "Actuator", "PositionServo",
     "VelocityServo", "JointFriction",
     "PointOnCurve", "CurveOnPoint", "Curve", "Spline", "Profile", "Friction", "Look",
+    "Modes", "Circle", "Tube", "Rectangle",
     "Drive", "JointInertia", "BeltStrand", "CurveSpring", "UserForce", "Drag", "Wind", "Magnus", "Buoyancy",
 }  # fmt: skip
 

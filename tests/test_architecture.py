@@ -15,13 +15,14 @@ from sources import tree
 ROOT = Path(carom.__file__).parent
 #: folders and modules of carom, lowest first (`docs/development/architecture.md`)
 ORDER = (
-    "_compiled", "hints", "arguments", "checks", "fields", "options", "status", "geometry", "scene",
+    "_compiled", "hints", "arguments", "checks", "fields", "options", "status", "geometry", "flexible", "scene",
     "collision", "model", "law", "kinematics", "contact", "friction", "dynamics", "impact", "persistent",
     "stepping", "results", "run", "generalized", "watch", "io", "control", "simulate", "studies",
     "visual", "baselines", "paper", "bench", "cli",
 )  # fmt: skip
 #: methods of what users hold in their hands that need a floor above, imported where they are called
 DOORS = {
+    ("flexible.modes", "io.files.disk"),
     ("scene.scene", "dynamics.mobility"),
     ("scene.contacts", "collision.api"),
     ("results.portable", "io.files.writing"),

@@ -157,6 +157,7 @@ SHOWN = [
     "Scene.add_static", "Scene.add_surface", "Scene.replace", "Run", "contact_inverse_mass", "curves.Curve",
     "curves.Spline", "Restitution", "Restitution.fit", "Friction",
     "Friction.fit", "Look", "Part", "Profile", "surfaces.HeightField", "surfaces.Surface",
+    "Modes", "flexible.beam",
 ]  # fmt: skip
 
 

@@ -17,6 +17,7 @@ PAGE = ROOT / "docs" / "development" / "thresholds.md"
 #: folders in the order of imports
 ROOMS = (
     "geometry",
+    "flexible",
     "collision",
     "model",
     "law",

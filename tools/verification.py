@@ -54,7 +54,7 @@ PLAIN = {
 #: titles of the parts of the page, in its order, by the pages of the reference
 TITLES = {
     "joints": "Joints and relations", "forces": "Forces", "scene": "Scenes and laws of contacts",
-    "shapes": "Shapes and ground", "impacts": "Impacts", "simulate": "Runs",
+    "shapes": "Shapes and ground", "flexible": "Flexible bodies", "impacts": "Impacts", "simulate": "Runs",
     "coordinates": "Your own coordinates",
     "derivatives": "Derivatives", "identify": "Fits to recorded motion", "ensembles": "Many runs",
     "models": "Models", "geometry": "Geometry", "baselines": "Baselines",

@@ -14,6 +14,7 @@ from campaigns import (
     coordinates,
     crowds,
     drives,
+    flexible,
     forced,
     frictions,
     gears,
@@ -55,5 +56,5 @@ FAMILIES = {
     "capstans": capstans.case, "coordinates": coordinates.case, "drives": drives.case,
     "clearances": clearances.case, "loads": loads.case, "magnets": magnets.case,
     "belt drives": belt_drives.case, "gears": gears.case, "switches": switches.case,
-    "presses": presses.case,
+    "presses": presses.case, "flexible": flexible.case,
 }  # fmt: skip

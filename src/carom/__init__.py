@@ -46,9 +46,10 @@ from carom.simulate import simulate
 from carom.status import AccuracyWarning, MistakeWarning, SimulationError, Status
 
 if TYPE_CHECKING:
-    from carom import baselines, geometry
+    from carom import baselines, flexible, geometry
     from carom.control.live import Run
     from carom.dynamics.contact_mass import contact_inverse_mass
+    from carom.flexible import Modes
     from carom.friction import ContactSolution, solve_contacts
     from carom.impact import Impact, LayerHistory, impact_layer, resolve_impact
     from carom.impact.multiple.api import CornerImpact, resolve_impacts
@@ -88,6 +89,7 @@ __all__ = [
     "Mesh",
     "MistakeWarning",
     "Model",
+    "Modes",
     "Options",
     "Part",
     "Profile",
@@ -112,6 +114,7 @@ __all__ = [
     "euler",
     "film",
     "films",
+    "flexible",
     "forces",
     "geometry",
     "gradient",
@@ -139,6 +142,7 @@ _LAZY = {
     "Impact": "carom.impact",
     "LayerHistory": "carom.impact",
     "Model": "carom.io.models",
+    "Modes": "carom.flexible.modes",
     "Run": "carom.control.live",
     "load_model": "carom.io.models",
     "UniformOrientation": "carom.studies.ensembles",
@@ -162,6 +166,7 @@ _LAZY = {
 _PACKAGES = {
     "baselines": "carom.baselines",
     "films": "carom.visual.films",
+    "flexible": "carom.flexible",
     "geometry": "carom.geometry",
     "models": "carom.io.models",
     "plots": "carom.visual.plots",

@@ -149,17 +149,18 @@ def stated():
         "Scene.add_body": of_scene(
             "add_body", shape=carom.Sphere(0.1), mass=1.0, density=None, inertia=(1.0, 1.0, 1.0),
             position=three, orientation=(1.0, 0, 0, 0), velocity=three, angular_velocity=three,
-            material=carom.Material(0.5, 0.1), name="new", color="red", look=carom.Sphere(0.2), replace=True,
+            material=carom.Material(0.5, 0.1), name="new", color="red", look=carom.Sphere(0.2), modes=None,
+            replace=True,
         ),
         "Scene.add_body of a density": of_scene(
             "add_body", shape=carom.Sphere(0.1), mass=None, density=1.0, inertia=None,
             position=three, orientation=(1.0, 0, 0, 0), velocity=three, angular_velocity=three,
-            material=None, name="new", color=None, look=None, replace=False,
+            material=None, name="new", color=None, look=None, modes=None, replace=False,
         ),
         "Scene.add_static": of_scene(
             "add_static", shape=carom.Sphere(0.1), position=three, orientation=(1.0, 0, 0, 0),
             material=carom.Material(0.5, 0.1), name="new", color="red", surface_velocity=(1.0, 0, 0),
-            surface_spin=((0, 0, 1.0), 2.0, three), replace=True,
+            surface_spin=((0, 0, 1.0), 2.0, three), modes=None, replace=True,
         ),
         "Scene.add_surface": of_scene(
             "add_surface", definition=carom.surfaces.InsideSphere(9.0), position=three,

@@ -15,6 +15,7 @@ from pathlib import Path
 import numpy as np
 
 from bad_input.kinds import NO_NUMBERS, WRONG
+from bad_input.modes import modal
 from bad_input.reads import read
 from bad_input.runs import run
 from bad_input.states import stated
@@ -61,7 +62,7 @@ RIGHT = {"duration": LONG, "until": LONG, "export": {"none"}}
 
 def recipes(folder):
     """Return functions of (callable, arguments that work) by name."""
-    return {**stated(), **run(folder), **read(folder)}
+    return {**stated(), **modal(folder), **run(folder), **read(folder)}
 
 
 def plain(name: str) -> str:

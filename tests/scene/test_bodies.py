@@ -81,7 +81,10 @@ BAD_BODIES = [
     ({"mass": -2.5}, "mass must be finite and above 0 [kg], got -2.5"),
     ({"mass": math.nan}, "mass must be finite and above 0 [kg], got nan"),
     ({"mass": "heavy"}, "mass must be a number [kg], got 'heavy'"),
-    ({"mass": None}, "exactly one of mass and density must be given, got mass=None, density=None"),
+    (
+        {"mass": None},
+        "exactly one of mass and density must be given, got mass=None, density=None; or modes, with a mass",
+    ),
     ({"density": 2}, "exactly one of mass and density must be given, got mass=1, density=2"),
     ({"mass": None, "density": -3}, "density must be finite and above 0 [kg/m^3], got -3"),
     ({"mass": None, "density": 3, "shape": None}, "density needs a shape, got density=3"),

@@ -86,6 +86,10 @@ TOUCH_POINT = [
     ("owner", "i8"),  # of the normal: OF_A or OF_B for that of a face, else NOBODY (`features`)
     ("parts", "i8", 2),  # parts of A and of B on which the point lies
     ("surface", "i8"),  # 1 + the number of the level surface that it lies on, 0 for none
+    # of bodies with modes: places on both undeformed bodies, in their axes, and the rate of the gap by modes
+    ("place_a", "f8", 3),
+    ("place_b", "f8", 3),
+    ("ringing", "f8"),
 ]
 
 MOST_POINTS = 8  # of one pair

@@ -11,6 +11,7 @@ import math
 
 from carom._compiled.decorators import kernel
 from carom._compiled.units import unit
+from carom.contact.continuous_detection import reach as reach_within
 from carom.contact.gap import round_off, slow
 from carom.contact.kinds import by_kind
 from carom.contact.kinds.curvature import curvature, place_and_axes
@@ -41,6 +42,7 @@ from carom.contact.point_lists import write_closed
 from carom.contact.thresholds import ACTIVE_REACH, REACH
 from carom.geometry.rotation import norm
 from carom.geometry.vectors import dot, minus
+from carom.kinematics.flexible import greatest_ringing
 from carom.model.actions import NOTHING, PERSIST, STRIKE
 from carom.model.contact_kinds import FOUND
 from carom.status import NOT_FINITE
@@ -82,6 +84,8 @@ def closing_speed(system, contact, state, work):
     """Return a bound of the speed at which any points of both approach each other [m/s]."""
     a, b = state[contact.body], contact.other
     s, v0, v1, v2 = contact.extent * norm(a.w), a.v[0], a.v[1], a.v[2]
+    if contact.bends == 1:
+        s += greatest_ringing(system, contact.body, b, state)
     if b >= 0:
         s += contact.other_extent * norm(state[b].w)
         v0, v1, v2 = v0 - state[b].v[0], v1 - state[b].v[1], v2 - state[b].v[2]
@@ -376,8 +380,11 @@ def time_apart(system, contact, state, bounds, h, work):
 
     And a bound of the acceleration with which a gap may close; `bounds` are those of `relative_bound`.
     """
-    plane = plane_of(nearest_touch(work))
-    return time_beside(system, contact, plane, state, bounds, h), bounds[1]
+    nearest = nearest_touch(work)
+    if contact.bends == 1:  # a plane beside an undeformed body says nothing of its modes
+        speed = closing_speed(system, contact, state, work)
+        return min(abs(h), reach_within(nearest.gap, -speed, bounds[1])), bounds[1]
+    return time_beside(system, contact, plane_of(nearest), state, bounds, h), bounds[1]
 
 
 @by_kind("contact")

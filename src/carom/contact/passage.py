@@ -43,6 +43,7 @@ from carom.contact.operations import (
 from carom.geometry.rotation import norm
 from carom.geometry.thresholds import RESOLUTION, ROUND_OFF
 from carom.geometry.vectors import minus
+from carom.kinematics.flexible import greatest_deflection, greatest_ringing
 from carom.model.workspace import FREE
 
 
@@ -175,7 +176,7 @@ def passage_between(model, data, c, step, at_end):
     if follows and cubic_clears(gap, rate0, least, rate, step.h, step.tiny):
         return CLEAR, first
     # other points may be nearest at the end (faces that are parallel): none comes so far
-    if smooth and min(gap, least) > greatest_travel(contact, data):
+    if smooth and min(gap, least) > greatest_travel(system, contact, data):
         return CLEAR, first
     bends = bent > step.tiny or follows or not step.short
     if step.little and max(abs(gap), abs(least)) <= step.tiny:
@@ -234,7 +235,7 @@ def is_integrated(system, contact):
 
 
 @kernel
-def greatest_travel(contact, data):
+def greatest_travel(system, contact, data):
     """Return a bound of the way of any point of one solid past the other, if motions are cubics of time.
 
     A cubic with the displacement D in a step h, and speeds up to s at its ends, goes at most D + 8/27 h s.
@@ -250,6 +251,10 @@ def greatest_travel(contact, data):
         if b >= 0:
             v, w = minus(v, state[b].v), w + contact.other_extent * norm(state[b].w)
         speed = max(speed, norm(v) + w)
+    if contact.bends == 1:
+        for state in (start, end):
+            turned += greatest_deflection(system, a, b, state)
+            speed += greatest_ringing(system, a, b, state)
     return norm(moved) + turned + limits.CUBIC_SHARE * data.work.search[0].dt * speed
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from carom._compiled.decorators import kernel
 from carom.dynamics.solve import free_body, solve
+from carom.kinematics.flexible import push_modes
 from carom.kinematics.row_of_coordinate import push_in_row
 from carom.kinematics.wrench import add_force
 from carom.model.workspace import (
@@ -78,6 +79,8 @@ def add_impulse(system, point, state, p, work):
     fz = E[0, 2] * ln + E[1, 2] * l1 + E[2, 2] * l2
     add_force(work, point.a, point.arm_a, (fx, fy, fz))
     add_force(work, point.b, point.arm_b, (-fx, -fy, -fz))
+    if point.bends == 1:
+        push_modes(system, point, state, (fx, fy, fz), work)
 
 
 @kernel

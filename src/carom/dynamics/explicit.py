@@ -20,6 +20,7 @@ from carom.dynamics.singular_positions import is_singular, pass_round, return_st
 from carom.dynamics.thresholds import JOINT_ERROR, SINGULARITY, STAGE_TURN
 from carom.geometry.rotation import multiply, normalize
 from carom.geometry.thresholds import RESOLUTION, SMALLEST
+from carom.kinematics.flexible import greatest_modal_acceleration
 from carom.kinematics.flight import free_flight
 from carom.model.workspace import FREE, HELD, RESTS
 from carom.status import CONSTRAINTS_LOST
@@ -193,7 +194,7 @@ def constrained_step(model, data, method, start, span, care):
     if keeps:
         keep_end(stage, work.stages[last], power, work)
     if system.contacts.shape[0] > 0 or E.shape[0] > 0:
-        bound_accelerations(work, stages)
+        bound_accelerations(model.system, work, stages)
     if E.shape[0] > 0:
         note_misses(system, E, h, work)
     for b in range(stage.shape[0]):
@@ -286,15 +287,15 @@ def forget_bounds(work):
 
 
 @kernel
-def bound_accelerations(work, stages):
+def bound_accelerations(system, work, stages):
     """Raise the bounds of |linear| and |angular| acceleration and |w| of each body to those of the stages."""
     for b in range(work.body.shape[0]):
-        bound_accelerations_of(work, b, stages)
+        bound_accelerations_of(system, work, b, stages)
 
 
 @kernel
-def bound_accelerations_of(work, b, stages):
-    """Raise the bounds of one body."""
+def bound_accelerations_of(system, work, b, stages):
+    """Raise the bounds of one body; what its modes add counts as linear."""
     bound = work.body[b].bound
     linear, angular, spin = bound[0] * bound[0], bound[1] * bound[1], bound[2] * bound[2]
     for s in range(stages):
@@ -303,6 +304,8 @@ def bound_accelerations_of(work, b, stages):
         angular = max(angular, a[3] * a[3] + a[4] * a[4] + a[5] * a[5])
         spin = max(spin, u[3] * u[3] + u[4] * u[4] + u[5] * u[5])
     bound[0], bound[1], bound[2] = math.sqrt(linear), math.sqrt(angular), math.sqrt(spin)
+    if system.bodies[b].modes > 0:
+        bound[0] += greatest_modal_acceleration(system, work, b, stages)
 
 
 @kernel

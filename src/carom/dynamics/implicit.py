@@ -78,7 +78,7 @@ def whole_step(system, start, h, work) -> tuple[float, int]:
             second.rate[k] = 1.5 * first.rate[k] + 0.5 * second.rate[k]
         move(start[b], h, second.speed, second.rate, end[b])
     forget_bounds(work)
-    bound_accelerations(work, 2)
+    bound_accelerations(system, work, 2)
     if not (project_position(system, end, False, JOINT_ERROR, work) <= RESOLUTION):
         code = CONSTRAINTS_LOST
     project_velocity(system, end, False, work)

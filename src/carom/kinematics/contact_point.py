@@ -10,6 +10,7 @@ from __future__ import annotations
 from carom._compiled.decorators import kernel
 from carom.geometry.rotation import cross, rotate
 from carom.kinematics.anisotropy import lay_along_axis
+from carom.kinematics.flexible import modal_acceleration, modal_motion, modal_velocity
 from carom.kinematics.row_of_coordinate import acceleration_in_row, motion_in_row, rate_in_row
 from carom.kinematics.wrench import point_velocity
 from carom.model.workspace import MOTION_PIVOT, MOTION_POINT, MOTION_ROLL
@@ -21,7 +22,7 @@ def place(contact, p, state, point):
     b, n, r = contact.body, contact.axes, contact.radius
     q, x, core, arm, axes = state[b].Q, state[b].x, point.core, point.arm_a, point.axes
     core[0], core[1], core[2] = rotate(q, p)
-    point.a, point.b, point.motion = b, -1, MOTION_POINT
+    point.a, point.b, point.motion, point.bends = b, -1, MOTION_POINT, 0
     gap = -contact.offset
     for k in range(3):
         arm[k] = core[k] - r * n[0, k]
@@ -56,6 +57,10 @@ def copy_point(p, q):
     q.a, q.b, q.gap, q.motion, q.length = p.a, p.b, p.gap, p.motion, p.length
     q.coordinate, q.grip = p.coordinate, p.grip
     q.owner, q.parts[0], q.parts[1], q.moves = p.owner, p.parts[0], p.parts[1], p.moves
+    q.bends = p.bends
+    if p.bends == 1:
+        for k in range(3):
+            q.place_a[k], q.place_b[k] = p.place_a[k], p.place_b[k]
     if p.moves == 1:
         copy_field(p, q)
     for k in range(3):
@@ -141,7 +146,11 @@ def contact_velocity(system, point, state):
     r, s = point.arm_a, point.arm_b
     ux, uy, uz = point_velocity(state, point.a, r[0], r[1], r[2])
     vx, vy, vz = point_velocity(state, point.b, s[0], s[1], s[2])
-    return on_surface(point, state, 0, in_axes(point, ux - vx, uy - vy, uz - vz))
+    ux, uy, uz = ux - vx, uy - vy, uz - vz
+    if point.bends == 1:
+        dx, dy, dz = modal_velocity(system, point, state)
+        ux, uy, uz = ux + dx, uy + dy, uz + dz
+    return on_surface(point, state, 0, in_axes(point, ux, uy, uz))
 
 
 @kernel
@@ -166,6 +175,9 @@ def contact_motion(system, point, state, work):
     if point.b >= 0:
         vx, vy, vz = motion_there(work.body[point.b].motion, point.arm_b)
         ux, uy, uz = ux - vx, uy - vy, uz - vz
+    if point.bends == 1:
+        dx, dy, dz = modal_motion(system, point, state, work)
+        ux, uy, uz = ux + dx, uy + dy, uz + dz
     return in_axes(point, ux, uy, uz)
 
 
@@ -185,15 +197,18 @@ def contact_acceleration(system, point, state, stage):
             z = (o[3], o[4], o[5])
         u = turning_rows(point, m[3] - z[0], m[4] - z[1], m[5] - z[2])
         return on_surface(point, state, 2, u)
+    dx, dy, dz = 0.0, 0.0, 0.0
+    if point.bends == 1:
+        dx, dy, dz = modal_acceleration(system, point, state, stage)
     if point.b >= 0:
         ax, ay, az = motion_there(stage[point.a].rate, point.arm_a)
         bx, by, bz = motion_there(stage[point.b].rate, point.arm_b)
-        return in_axes(point, ax - bx, ay - by, az - bz)
+        return in_axes(point, ax - bx + dx, ay - by + dy, az - bz + dz)
     v, w, c = state[point.a].v, state[point.a].w, point.core
     px, py, pz = cross(w[0], w[1], w[2], c[0], c[1], c[2])
     cx, cy, cz = cross(w[0], w[1], w[2], px, py, pz)
     ux, uy, uz = motion_there(stage[point.a].rate, point.arm_a)
-    u = in_axes(point, ux + cx, uy + cy, uz + cz)
+    u = in_axes(point, ux + cx + dx, uy + cy + dy, uz + cz + dz)
     if point.moves == 0:
         return u
     s = field_along(point, (v[0] + px, v[1] + py, v[2] + pz))

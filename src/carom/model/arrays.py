@@ -94,6 +94,10 @@ BODY = [
     ("axes", "f8", 4),  # quaternion from the principal axes to those of the scene
     ("ball", "f8"),  # radius of the ball around its centre that contains its shapes
     ("arm", "f8", 3),  # bound of the distance of its points from each principal axis
+    # of a body with modes: how many bodies after it stand for them (three modes each), and 1 + its place in
+    # `Flexible.bodies`; else 0
+    ("modes", "i8"),
+    ("flexible", "i8"),
 ]
 
 JOINT = [
@@ -267,6 +271,7 @@ CONTACT = [
     ("still", "f8"),  # speed that counts as zero: round-off of a fall by the body's size
     ("width", "f8"),  # b of the boundary layer
     ("penetration", "f8"),  # delta
+    ("bends", "i8"),  # 1 if one of the two is a body with modes
     # a surface that moves in itself: 0 none, 1 as `field` says, 2 + its place in `MovingSurfaces`
     ("moves", "i8"),
     # its velocity at the origin of the world and its angular velocity, and their rates
@@ -382,6 +387,30 @@ class MovingSurfaces(NamedTuple):
     write: np.ndarray  # (8,) velocity and acceleration, rate of spin and its rate
 
 
+#: displacements of a body by its modes, as splines between the nodes of a grid in its axes
+FLEXIBLE = [
+    ("origin", "f8", 3),  # first node
+    ("spacing", "f8", 3),
+    ("count", "i8", 3),  # of nodes: 1 (constant), 2 (linear), or at least 4 (cubic)
+    (
+        "first",
+        "i8",
+    ),  # of its coefficients in `Flexible.values`: (nodes or nodes + 2, ..., 3, modes)
+    ("modes", "i8"),  # three for each body that stands for them
+    ("first_most", "i8"),  # of the greatest displacements by its modes, in `Flexible.most`
+    ("fastest", "f8"),  # its highest frequency [rad/s]
+]
+
+
+class Flexible(NamedTuple):
+    """The shapes of the modes of bodies that have some."""
+
+    bodies: np.recarray  # FLEXIBLE
+    values: np.ndarray  # coefficients
+    most: np.ndarray  # greatest displacement for the coordinate 1, of each mode
+    shapes: np.ndarray  # (3, most modes) workspace: displacements by the modes at one place
+
+
 class System(NamedTuple):
     """All that the kernels know about a scene. Once compiled, only the workspaces in it change."""
 
@@ -399,3 +428,4 @@ class System(NamedTuple):
     moving: MovingSurfaces
     solver: Solver
     chart: Chart
+    flexible: Flexible

@@ -27,6 +27,7 @@ from carom.model.arrays import (
 from carom.model.chart import ROWS_OF_ELEMENT, Chart, no_chart
 from carom.model.contacts import Contacts, Surfaces, compile_contacts, more_contacts
 from carom.model.cores import arms_of
+from carom.model.flexible import bodies_of_modes, flexible_bodies, refuse_others
 from carom.model.forces import Place
 from carom.model.laws import LawTable
 from carom.model.moving_surfaces import moving_surfaces
@@ -147,7 +148,9 @@ class _Moved:
             relations=relations, forces=self.forces.tables, contacts=contacts, laws=self.laws.arrays(),
             vertices=touching.vertices, solids=touching.solids, hulls=touching.hulls,
             levels=touching.levels, solver=self.solver, moving=moving, chart=self.chart,
+            flexible=flexible_bodies(self.scene),
         )  # fmt: skip
+        refuse_others(self.scene, system)
         return Compiled(
             system=system, start=self.start, to_principal=self.to_principal, flipped=self.flipped,
             functions=self.functions, pairs=touching.pairs, surfaces=touching.surfaces,
@@ -374,6 +377,11 @@ def _bodies(scene, moments, joints, elements, loaded, joined):
         isolated[joints[side][joints[side] >= 0]] = 0
     for touched in (*elements.present, joined[joined >= 0]):
         isolated[touched] = 0
+    flexible = bodies_of_modes(scene)
+    for b in np.flatnonzero(flexible).tolist():  # an impulse on it moves its modes
+        isolated[b : b + flexible[b] + 1] = 0
+    bodies["modes"] = flexible
+    bodies["flexible"] = np.where(flexible > 0, np.cumsum(flexible > 0), 0)
     ballistic = isolated.copy()
     ballistic[loaded[loaded >= 0]] = 0
     if scene._chart is not None:

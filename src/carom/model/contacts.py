@@ -20,7 +20,7 @@ from carom.model.cores import Cores, new_cores, singly, swollen_alike
 from carom.model.laws import LawTable
 from carom.model.level_surfaces import find_levels, note_own, with_level_rows
 from carom.model.moving_surfaces import write_fields
-from carom.model.thresholds import LAYER_WIDTH, LEAST_SPEED, STILL_SPEED
+from carom.model.thresholds import LAYER_WIDTH, LEAST_SPEED, MOST_DEFLECTION, STILL_SPEED
 from carom.options import Options
 from carom.scene.all_pairs import Defaults, PairTable, meeting
 from carom.scene.friction import FIXED_TO, anisotropy_of
@@ -84,7 +84,7 @@ def compile_contacts(
         *(one.tobytes() for one in of_pairs), first_law, options.layer_width, options.penetration,
         *(anisotropy_of(one.friction) for one in known.laws),
         *((plane.point.tobytes(), plane.normal.tobytes()) for plane in scene.half_spaces),
-        *(body.shape for body in scene.bodies),
+        *((body.shape, body.modes is None) for body in scene.bodies),
     )  # fmt: skip
     template = _KNOWN.get(key)
     if template is not None:
@@ -118,7 +118,8 @@ def _contacts(scene: Scene, known: PairTable, later, laws, to_principal, options
     """Return the contacts of the pairs `known`; `laws` are all laws, and the number of the first of these."""
     pairs, to_principal = _with_statics(scene, known), _and_of_statics(scene, to_principal)
     meets = pairs.other >= 0
-    grounded = new_cores(_shapes(scene, pairs.body[~meets]), swollen_alike, to_principal)
+    bends = [getattr(part, "modes", None) is not None for part in _parts(scene)]
+    grounded = new_cores(_shapes(scene, pairs.body[~meets]), swollen_alike, to_principal, bends)
     others = np.zeros(0, dtype=np.int64) if later is None else np.flatnonzero(meeting(later))
     every = _shapes(scene, pairs.body[meets], pairs.other[meets], others)
     single = new_cores(every, singly, to_principal)
@@ -197,11 +198,23 @@ def _rows(scene, options: Options, pairs: PairTable, which: Rows, surfaces: Surf
     _write_statics(rows, scene)
     write_kinds(rows, surfaces.solids)
     note_own(rows, surfaces.levels)
+    _write_bends(rows, scene)
     extent = rows["extent"]
     rows["still"] = np.maximum(STILL_SPEED * _speed(scene, extent), LEAST_SPEED)
     rows["width"] = LAYER_WIDTH * extent if options.layer_width is None else options.layer_width
     rows["penetration"] = options.penetration
     return rows
+
+
+def _write_bends(rows: np.recarray, scene: Scene) -> None:
+    """Write which rows have a body with modes, and make room around it for its deflection."""
+    bends = np.array([getattr(part, "modes", None) is not None for part in _parts(scene)] + [False])
+    if not bends.any():
+        return
+    for side, name in (("body", "extent"), ("other", "other_extent")):
+        bent = bends[rows[side]]
+        rows["bends"][bent] = 1
+        rows[name][bent] *= 1.0 + MOST_DEFLECTION
 
 
 def _speed(scene: Scene, extent: np.ndarray) -> np.ndarray | float:

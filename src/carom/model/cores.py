@@ -54,12 +54,16 @@ def swollen_alike(pieces: Sequence[Piece]) -> list[list[int]]:
 
 
 def new_cores(
-    shapes: Sequence[Shape | None], split: Callable[..., list[list[int]]], to_principal: np.ndarray
-) -> Cores:
-    """Return the cores of the shape of each body; `split` groups the pieces. A shape None has no cores."""
+    shapes: Sequence[Shape | None], split: Callable[..., list[list[int]]], to_principal: np.ndarray,
+    bends: Sequence[bool] | None = None,
+) -> Cores:  # fmt: skip
+    """Return the cores of the shape of each body; `split` groups the pieces. A shape None has no cores.
+
+    The corners of a body that `bends` are found anew in each state, as points of curved pieces are.
+    """
     own = [
-        None if shape is None else _cores_of(shape, split, tuple(q))
-        for shape, q in zip(shapes, to_principal.tolist())
+        None if shape is None else _cores_of(shape, singly if bent else split, tuple(q), bent)
+        for shape, q, bent in zip(shapes, to_principal.tolist(), bends or [False] * len(shapes))
     ]
     counts = [0 if one is None else len(one.group) for one in own]
     first = np.array([0, *accumulate(counts)], dtype=np.int64)
@@ -101,7 +105,9 @@ def arms_of(shape: Shape, to_principal: tuple[float, ...]) -> np.ndarray:
 
 
 @lru_cache(maxsize=64)
-def _cores_of(shape: Shape, split, to_principal: tuple[float, ...]) -> CoresOfShape:
+def _cores_of(
+    shape: Shape, split, to_principal: tuple[float, ...], bends: bool = False
+) -> CoresOfShape:
     """Return the groups of one shape; they are cached, because simulations often share shapes."""
     pieces = shape.pieces
     groups = split(pieces)
@@ -115,6 +121,8 @@ def _cores_of(shape: Shape, split, to_principal: tuple[float, ...]) -> CoresOfSh
         rows["ball_like"][k] = pieces[mine[0]].kind in ROUND_KINDS
         if len(corners):
             rows["reach"][k] = np.max(np.linalg.norm(points[k], axis=1))
+    if bends:
+        rows["curved"], rows["last"], points = 1, 0, [np.zeros((0, 3))]
     return CoresOfShape(rows, np.concatenate(points))
 
 

@@ -31,6 +31,12 @@ def has_metric(system):
 
 
 @inlined
+def has_modes(system):
+    """Return whether a body is flexible."""
+    return system.flexible.bodies.shape[0] > 0
+
+
+@inlined
 def are_joined(system):
     """Return whether an impulse on a body may move others."""
     return system.joints.shape[0] > 0 or has_metric(system)

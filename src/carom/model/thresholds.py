@@ -9,3 +9,4 @@ EQUAL_MOMENTS = 1e-13  #: greatest moment: a difference that is round-off: the m
 LEAST_SPEED = 1e-60  #: m/s: nothing that is slower moves in any run; without gravity and motion no other scale
 STILL_SPEED = 1e-14  #: speed of a fall by the size of the body, or of the start: that counts as zero
 LAYER_WIDTH = 1e-5  #: size of the body: b of the boundary layer (`Options.layer_width`)
+MOST_DEFLECTION = 0.1  #: size of the body: deflection for which bounds of its distance leave room

@@ -49,6 +49,9 @@ POINT = [
         "i8",
     ),  # 1 if the surface of the other side moves in itself, as `field` says (`CONTACT`)
     ("field", "f8", (4, 3)),
+    ("bends", "i8"),  # 1 if a body has modes: its places on both undeformed bodies, in their axes
+    ("place_a", "f8", 3),
+    ("place_b", "f8", 3),
 ]
 
 #: `motion` of a point: that of two points, in rows n, t1, t2; relative rotation of rolling (t1, t2) and of

@@ -212,7 +212,7 @@ def note_closed(model, data, label, falls):
     member, work = data.group.bodies.member, data.work
     for m in range(members(work, label, member)):
         miss = work.body[member[m]].miss
-        bound_accelerations_of(work, member[m], 2)
+        bound_accelerations_of(model.system, work, member[m], 2)
         miss[0], miss[1], miss[2] = max(miss[0], falls), 0.0, 0.0
 
 
@@ -285,7 +285,7 @@ def note_errors(model, data, E, label, k, h):
     for m in range(members(work, label, group.bodies.member)):
         b, longest = group.bodies.member[m], math.inf
         work.body[b].bound[:3] = 0.0
-        bound_accelerations_of(work, b, E.shape[1])
+        bound_accelerations_of(system, work, b, E.shape[1])
         if controls.order > 0:
             work.body[b].miss[:4] = 0.0
             if controls.pull > 0.0:

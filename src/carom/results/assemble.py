@@ -12,7 +12,7 @@ from carom.geometry import quaternion
 from carom.impact.layout import AT_END, WEDGED
 from carom.model import records as r
 from carom.model.laws import law_of
-from carom.results import stiff_forces, waves
+from carom.results import small_deflections, stiff_forces, waves
 from carom.results.accuracy import sentences
 from carom.results.beyond_bounds import beyond_bounds
 from carom.results.costs import busiest
@@ -78,6 +78,7 @@ def assemble(run, status: Status) -> dict:
             *stiff_forces.remarks(run, series, state),
             *beyond_bounds(run, impact, rec.touch, series["t"]),
             *tipped_strands(run, rec.state, series["t"]),
+            *small_deflections.remarks(run, rec.state, series["t"]),
         ),
         "stats": {
             "steps": clock["step"], "trial_steps": clock["trials"], "rejected": clock["rejected"],

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import KW_ONLY, dataclass
-from typing import TYPE_CHECKING, Any, ClassVar
+from typing import TYPE_CHECKING, Any, ClassVar, cast
 
 import numpy as np
 from numpy.typing import ArrayLike
 
 from carom import arguments, checks, fields
 from carom.fields import Number, Value, Vector, keep
+from carom.flexible.modes import Modes
 from carom.geometry.attitude import attitude
+from carom.scene.flexible_bodies import add_modes, of_modes
 from carom.scene.look import Look, checked_look
 from carom.scene.materials import Material
 from carom.scene.shapes import SHAPES, Shape
@@ -24,6 +26,7 @@ from carom.scene.values import MethodsOfScene, in_scene
 
 if TYPE_CHECKING:
     from carom.geometry.attitude import Orientation
+    from carom.scene.scene import Scene
 
 SLACK = 1e-12  # relative to the largest entry or moment: rounding, not physics
 GREATEST = 1e300  # [kg m^2]: sums are finite
@@ -49,6 +52,8 @@ class Body(Solid):
         Initial velocity of the mass centre [m/s] and angular velocity [rad/s], in world axes.
     look : tuple of Look or None
         What is seen of it; None: its shape.
+    modes : Modes or None
+        Its modes; None: it is rigid.
     """
 
     shape: Shape | None
@@ -60,6 +65,9 @@ class Body(Solid):
     angular_velocity: Vector = fields.vector()
     _: KW_ONLY
     look: Value[tuple[Look, ...] | None, Any] = Value(checked_look, None)
+    modes: Value[Modes | None, Any] = Value(
+        lambda name, value: checks.instance(name, value, (Modes,)), None
+    )
 
     def __post_init__(self):
         if self.shape is not None:
@@ -106,7 +114,7 @@ def _mass(shape: Shape | None, mass, density) -> float:
     if (mass is None) == (density is None):
         raise ValueError(
             f"exactly one of mass and density must be given, got mass={checks.shown(mass)}, "
-            f"density={checks.shown(density)}"
+            f"density={checks.shown(density)}{'; or modes, with a mass' if mass is None else ''}"
         )
     if density is None:
         if isinstance(mass, (float, np.floating)) and mass == np.inf:
@@ -184,10 +192,11 @@ class SceneBodies(MethodsOfScene):
         material: Material | None = None,
         color: str | ArrayLike | None = None,
         look: Shape | Look | Sequence[Shape | Look] | None = None,
+        modes: Modes | None = None,
         name: str | None = None,
         replace: bool = False,
     ) -> Body:
-        """Add a rigid body.
+        """Add a rigid body, or one that bends by its `modes`.
 
         Parameters
         ----------
@@ -218,6 +227,11 @@ class SceneBodies(MethodsOfScene):
         look : Look, shape, or sequence of them
             What pages, pictures, films and exports show in place of the shape. It touches nothing. Default: the
             shape. An empty sequence: nothing is seen.
+        modes : Modes, optional
+            Modes of a free flexible body (`carom.flexible`), with its mass and inertia: then mass, density and
+            inertia must be left out. The body flies, rings, strikes and rests; it touches at the corners, or
+            the curved parts, of its shape, and no joint or force acts on it. Bodies after it in
+            `bodies`, named ``"NAME modes 1-3"`` and so on, stand for its modes, three each. Default: rigid.
         name
             Name in the scene. A cube with "die" in its name is drawn with pips. Default ``"body1"``,
             ``"body2"``, ...
@@ -243,12 +257,18 @@ class SceneBodies(MethodsOfScene):
         ValueError: mass must be finite and above 0 [kg], got -1.0
         """
         shape = shape_given(shape)
+        if modes is not None:
+            given = {"mass": mass, "density": density, "inertia": inertia}
+            mass, inertia = of_modes(modes, shape, given, replace)
         mass, inertia = mass_and_inertia(shape, mass, density, inertia)
-        return self._parts.make(
+        body = self._parts.make(
             Body, "body", name, replace, shape=shape, mass=mass, inertia=inertia, position=position,
             orientation=orientation, velocity=velocity, angular_velocity=angular_velocity,
-            material=material, color=color, look=look,
+            material=material, color=color, look=look, modes=modes,
         )  # fmt: skip
+        if modes is not None:
+            add_modes(self._parts, body, modes, cast("Scene", self).gravity)
+        return body
 
     @property
     def bodies(self) -> tuple[Body, ...]:

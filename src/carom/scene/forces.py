@@ -12,6 +12,7 @@ from carom import arguments, checks
 from carom.scene.bodies import GROUND, Body, Ground
 from carom.scene.constraints import with_parts
 from carom.scene.coordinates import Combination
+from carom.scene.flexible_bodies import rigid
 from carom.scene.force_definition import ForceDefinition
 from carom.scene.values import MethodsOfScene, PartOfScene, in_scene, subclasses_in
 
@@ -36,6 +37,7 @@ from carom.scene.fluids import Buoyancy as Buoyancy
 from carom.scene.actuators import PositionServo as PositionServo
 from carom.scene.actuators import VelocityServo as VelocityServo
 from carom.scene.strand_force import BeltStrand as BeltStrand
+from carom.scene.modal_spring import ModalSpring as ModalSpring
 # isort: on
 
 FORCES = subclasses_in(globals(), ForceDefinition)
@@ -140,6 +142,7 @@ class SceneForces(MethodsOfScene):
                 "add_force(definition, parent, child) for one between two"
             )
         parent, child = self._parts.pair(parent, child)
+        rigid(parent, child)
         return self._parts.make(
             AppliedForce, "force", name, replace, definition=definition, parent=parent, child=child
         )

@@ -15,6 +15,7 @@ from carom.scene.changes import KINDS, list_of, renewed
 from carom.scene.changes import dependents as dependents_of
 from carom.scene.constraints import Constraint, SceneConstraints, with_parts
 from carom.scene.contacts import Contact, check_gap
+from carom.scene.flexible_bodies import bodies_of_modes
 from carom.scene.forces import AppliedForce
 from carom.scene.joints.adding import SceneJoints
 from carom.scene.look import Look, checked_look
@@ -154,6 +155,9 @@ class Scene(
                 f"dependents must be True to remove {part.name!r} together with what refers to it: "
                 f"{list_of(others)}"
             )
+        for one in bodies_of_modes(self, part):  # nothing else refers to them
+            found += [one, *dependents_of(self._parts, one)]
+        found = list(dict.fromkeys(found))
         removed = part, *found
         self._parts.exchange({id(one): None for one in removed})
         for one in removed:

@@ -14,6 +14,7 @@ from carom import arguments, checks, fields
 from carom.fields import Value, Vector, keep
 from carom.geometry.attitude import attitude
 from carom.scene.colors import hex_color
+from carom.scene.flexible_bodies import add_supported
 from carom.scene.materials import Material
 from carom.scene.moving_surfaces import (
     GivenSpin,
@@ -30,7 +31,9 @@ from carom.scene.surfaces import SURFACES, SurfaceDefinition
 from carom.scene.values import MethodsOfScene, PartOfScene, in_scene
 
 if TYPE_CHECKING:
+    from carom.flexible.modes import Modes
     from carom.geometry.attitude import Orientation
+    from carom.scene.bodies import Body
 
 
 @dataclass(frozen=True, eq=False, repr=False)
@@ -199,10 +202,11 @@ class SceneSolids(MethodsOfScene):
         color: str | ArrayLike | None = None,
         surface_velocity: ArrayLike | Callable | None = None,
         surface_spin: GivenSpin | None = None,
+        modes: Modes | None = None,
         name: str | None = None,
         replace: bool = False,
-    ) -> StaticBody:
-        """Add a solid that never moves: a wall, a peg, a ramp, a mesh.
+    ) -> StaticBody | Body:
+        """Add a solid that never moves: a wall, a peg, a ramp, a mesh; or one that bends on its supports.
 
         Bodies touch it as they touch each other. It has no mass and no degrees of freedom, and it does not
         connect the bodies that touch it to one island.
@@ -229,6 +233,10 @@ class SceneSolids(MethodsOfScene):
             rollers do, in addition to `surface_velocity`. The axis goes through `position`, or through `point`
             (3,). The rate may be a function ``t -> (rate, its derivative)`` or a piecewise polynomial. The work
             of both drives is in `Ledger.loads`, the power of each in `Solution.surface_power`.
+        modes : Modes, optional
+            Modes of a body on supports (`carom.flexible`), such as a beam with clamped ends. Then the result is
+            a `Body` that is fixed to the ground, bends under its weight at the start, and rings when it is
+            struck; its surface cannot move in itself. Default: rigid.
         name
             Name in the scene. Default ``"static1"``, ``"static2"``, ...
         replace : bool
@@ -245,6 +253,24 @@ class SceneSolids(MethodsOfScene):
         >>> scene.add_contact(ball, step, restitution=0.5, friction=0.3)
         Contact('ball-step', restitution=0.5, friction=0.3, impact_law='newton')
         """
+        if modes is not None:
+            refused = {
+                "surface_velocity": surface_velocity,
+                "surface_spin": surface_spin,
+                "replace": replace,
+            }
+            for key, value in refused.items():
+                if value is not None and value is not False:
+                    raise ValueError(
+                        f"{key} must be left out with modes, got {checks.shown(value)}"
+                    )
+            place = {
+                "position": position,
+                "orientation": orientation,
+                "material": material,
+                "color": color,
+            }
+            return add_supported(self, shape_given(shape), modes, place, name)
         return self._parts.make(
             StaticBody, "static", name, replace, shape=shape_given(shape), position=position,
             orientation=orientation, material=material, color=color,

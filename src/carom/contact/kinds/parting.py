@@ -201,8 +201,8 @@ def widest_face(system, contact, state):
 
 @kernel
 def beside_face(system, contact, state, near):
-    """Return whether a face of a box shows that the gap of two solids is above `near`."""
-    return widest_face(system, contact, state)[2] > near
+    """Return whether a face of a box shows that the gap of two solids is above `near`; modes move faces."""
+    return contact.bends == 0 and widest_face(system, contact, state)[2] > near
 
 
 @kernel
@@ -214,6 +214,8 @@ def stays_beside_face(system, data, contact, smooth, tiny, bounds):
     has more room, now the other, by round-off: that of the start is followed to the end. Else the plane must
     separate them at both ends, for the bounds to hold on the way from there.
     """
+    if contact.bends == 1:  # its modes move the faces
+        return False
     start, end, h = data.state, data.work.trial, data.work.search[0].dt
     plane, face, room = widest_face(system, contact, start)
     if not room >= -tiny:

@@ -12,6 +12,7 @@ from carom.geometry.thresholds import LAST_DIGIT
 from carom.geometry.vectors import dot, minus
 from carom.kinematics.flight import relative_bound
 from carom.kinematics.wrench import point_velocity
+from carom.model.thresholds import MOST_DEFLECTION
 from carom.model.workspace import RESTS
 
 
@@ -63,7 +64,10 @@ def balls(system, contact, state, pieces):
     y = (q.x[0], q.x[1], q.x[2], 0.0, 0.0, 0.0)
     if contact.static == 0:
         y = centre_of_piece(contact.other, q, state)
-    return centre_of_piece(contact.body, p, state), y, p.extent + q.extent
+    radii = p.extent + q.extent
+    if contact.bends == 1:
+        radii += MOST_DEFLECTION * (contact.extent + contact.other_extent)
+    return centre_of_piece(contact.body, p, state), y, radii
 
 
 @kernel

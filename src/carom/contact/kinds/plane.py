@@ -18,6 +18,7 @@ from carom.collision.plane import plane_unit
 from carom.collision.support import change_of_support
 from carom.contact.kinds import half_space
 from carom.contact.kinds.curvature import curvature, place_and_axes
+from carom.contact.kinds.found_points import bend, further
 from carom.contact.kinds.partner import pose_of
 from carom.contact.kinds.profile_drift import drift_of_profile
 from carom.contact.kinds.rim import in_solid
@@ -35,7 +36,9 @@ def list_touches(system, contact, state, reach, work):
     pose[0, 0], pose[0, 1], pose[0, 2] = x
     pose[0, 3], pose[0, 4], pose[0, 5], pose[0, 6] = q
     plane, a = Plane(contact.axes[0], contact.offset), Placed(solid, pose[0, :3], pose[0, 3:])
-    plane_unit(a, plane, system.hulls, reach, work.pair, work.touches)
+    far = further(system, contact, state, reach)
+    plane_unit(a, plane, system.hulls, far, work.pair, work.touches)
+    bend(system, contact, state, work)
     return work.pair.state[0].total
 
 

@@ -29,6 +29,8 @@ import numpy as np
 
 from carom import checks
 from carom.fields import keep
+from carom.flexible.grid import GridModes, on_grid
+from carom.flexible.modes import Modes
 from carom.io.files.scene_check import check_record
 from carom.results.robot import Ball, Coordinate, FreeBody, Keyframe, Motor, Robot
 from carom.results.sensors import Frame, Sensor
@@ -80,6 +82,7 @@ TYPES: dict[str, type[Any]] = {
         Material,
         Piece,
         Look,
+        GridModes,
         *ROBOT,
     )
 }
@@ -87,7 +90,7 @@ TYPES: dict[str, type[Any]] = {
 LATER: dict[str, Any] = {
     "color": None, "material": None, "of_materials": {"tuple": []}, "tangential_restitution": 0.0,
     "surface_velocity": None, "surface_spin": None, "axis": None, "along": None, "across": None, "of": "body",
-    "look": None, "adhesion": 0.0,
+    "look": None, "adhesion": 0.0, "modes": None,
 }  # fmt: skip
 #: the same of fields whose names mean something else in other classes
 LATER_OF: dict[str, dict[str, Any]] = {
@@ -169,7 +172,10 @@ class Encoder:
                 continue
             name = field.name if field.name == "definition" else f"{where}.{field.name}"
             below = where if field.name == "definition" else name
-            values[field.name] = self.value(getattr(record, field.name), below)
+            value = getattr(record, field.name)
+            if isinstance(value, Modes):  # a function of place is written as what a run uses
+                value = on_grid(value, record.shape)
+            values[field.name] = self.value(value, below)
         return {"type": type(record).__name__, **values}
 
     def _shape(self, shape) -> int:
@@ -243,7 +249,7 @@ def _is_as_before(record, name: str) -> bool:
     if isinstance(record, Piece):
         return record.material is None
     if isinstance(record, Body):
-        return name == "look" and record.look is None
+        return name in ("look", "modes") and getattr(record, name) is None
     return isinstance(record, ContactLaw) and name == "of_materials" and not record.of_materials
 
 

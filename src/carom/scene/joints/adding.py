@@ -13,6 +13,7 @@ from carom import arguments, checks
 from carom.scene.belts import BeltDrive, add_belt
 from carom.scene.bodies import Body, Ground
 from carom.scene.coordinates import Axial, Bush, Length
+from carom.scene.flexible_bodies import rigid
 from carom.scene.joints import JOINTS, Belt, Clearance, Distance, Joint, JointDefinition, Tether
 from carom.scene.stops import Stop
 from carom.scene.switches import SceneSwitches, limits_of
@@ -155,6 +156,7 @@ class SceneJoints(SceneSwitches):
                 f"{checks.shown(parent)} and {checks.shown(child)}"
             )
         parent, child = self._parts.pair(parent, child)
+        rigid(parent, child)
         made = self._parts.make(
             Joint, "joint", name, replace, definition=definition, parent=parent, child=child,
             frames=(parent_frame, child_frame),
@@ -180,6 +182,7 @@ class SceneJoints(SceneSwitches):
                 f"parent and child must be given: add_joint({type(d).__name__}(...), parent, child)"
             )
         parent, child = self._parts.pair(parent, child)
+        rigid(parent, child)
         if isinstance(d, Belt):
             if replace:
                 raise ValueError(

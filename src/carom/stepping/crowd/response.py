@@ -100,7 +100,8 @@ def write_rows(system, point, crowd, link, first, work):
         for e in range(first, last):
             memory = work.body[other[e].body]
             for j in range(6):
-                spans = point.motion in (MOTION_STOP, MOTION_THREE) and memory.wrench[j] != 0.0
+                spans = point.motion in (MOTION_STOP, MOTION_THREE) or point.bends == 1
+                spans = spans and memory.wrench[j] != 0.0
                 other[e].rows[r, j] = memory.wrench[j] if spans else 0.0
                 other[e].response[j, r] = memory.motion[j]
                 link.spans = 1 if spans else link.spans

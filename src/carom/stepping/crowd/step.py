@@ -118,6 +118,8 @@ def piece(system, now, controls, left):
             distance += turn * body.ball
             far = max(limits.THIN_PART * far, min(far, SAFE_DISPLACEMENT * thickness(body)))
         parts = max(parts, math.ceil(distance / far))
+    for i in range(system.flexible.bodies.shape[0]):  # modes must not turn far
+        parts = max(parts, math.ceil(left * system.flexible.bodies[i].fastest))
     for i in range(system.contacts.shape[0]):  # a pin must not pass through its bush within a piece
         contact = system.contacts[i]
         far = SAFE_DISPLACEMENT * turning_radius(system, contact)

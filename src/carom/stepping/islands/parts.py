@@ -89,7 +89,7 @@ def part_system(system, islands, i, joints, own):
         joints=joints, relations=relations, forces=forces,
         contacts=islands.contacts[first[1, i] : first[1, i + 1]], vertices=system.vertices,
         laws=system.laws, solids=system.solids, hulls=system.hulls, levels=system.levels,
-        moving=system.moving, solver=solver, chart=system.chart,
+        moving=system.moving, solver=solver, chart=system.chart, flexible=system.flexible,
     )  # fmt: skip
 
 

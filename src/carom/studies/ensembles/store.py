@@ -115,7 +115,10 @@ class Store:
     @property
     def layout(self) -> Layout:
         """What the states at the ends of the runs are of."""
-        return Layout.of_facts(self.about, int(self.group.attrs.get("bodies", 0)))
+        bodies = (
+            self.group["outcomes/position"].shape[1] if "outcomes/position" in self.group else 0
+        )
+        return Layout.of_facts(self.about, bodies)
 
     @property
     def runs(self) -> int:
